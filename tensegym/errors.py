@@ -1,0 +1,25 @@
+"""One root exception; every error is also the builtin a caller would expect."""
+
+
+class TensegymError(Exception):
+    """Root of every error this package raises on purpose."""
+
+
+class StructureError(TensegymError, ValueError):
+    """Nodes, rods or cables that do not make a class-1 tensegrity, or that no self-stress can hold."""
+
+
+class DesignError(TensegymError, ValueError):
+    """A design field that is unknown, missing or outside its allowed range."""
+
+
+class FlexureError(TensegymError, ValueError):
+    """A hinge, a joint model or measured data that cannot be used as given."""
+
+
+class InputError(TensegymError, ValueError):
+    """A file or a command-line value that cannot be used as given."""
+
+
+class SimulationError(TensegymError, RuntimeError):
+    """The simulation left the states it can be trusted in."""

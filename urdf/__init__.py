@@ -1,0 +1,1 @@
+"""URDF files of the default robots, found with importlib.resources."""
