@@ -1,0 +1,17 @@
+"""Gymnasium environments. Importing registers them; `import tensegym` is enough."""
+
+if not __name__.startswith("tensegym."):
+    raise ImportError("import tensegym.envs, not envs: the folder is a part of the tensegym package")
+
+from gymnasium.envs.registration import register, registry
+
+ROLLING = "tensegym/SixRodRolling-v0"
+EPISODE_SECONDS = 20.0
+CONTROL_PERIOD = 0.2
+
+if ROLLING not in registry:
+    register(
+        id=ROLLING,
+        entry_point="tensegym.envs.rolling:RollingEnv",
+        max_episode_steps=round(EPISODE_SECONDS / CONTROL_PERIOD),
+    )

@@ -1,0 +1,151 @@
+"""World: the only module that talks to PyBullet. Every call names its client."""
+
+from __future__ import annotations
+
+import math
+import os
+import struct
+import weakref
+from collections.abc import Sequence
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pybullet
+
+from .errors import SimulationError
+from .structure import FloatArray
+
+_ROBOT_GROUP, _GROUND_GROUP = 1, 2
+
+
+def _disconnect(client: int) -> None:
+    if pybullet.isConnected(physicsClientId=client):
+        pybullet.disconnect(physicsClientId=client)
+
+
+class World:
+    """A physics client with bodies in it.
+
+    Bodies are rigid, in maximal coordinates (a seventh of the bare step cheaper here than multibodies, and their
+    gyroscopic step loses energy where the multibodies' gains it), with true inertia, no damping and no sleeping.
+    """
+
+    def __init__(self, dt: float, gravity: float, gui: bool = False) -> None:
+        if gui and not os.environ.get("DISPLAY"):
+            raise SimulationError("no display to open a window on: set DISPLAY, or render to rgb_array instead")
+        self.client = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
+        if self.client < 0:
+            raise SimulationError("PyBullet gave no physics client; close other worlds first")
+        self._finalizer = weakref.finalize(self, _disconnect, self.client)
+        self.bodies: list[int] = []
+        self.ground: int | None = None
+        self._pack = struct.Struct("0d")
+        self.poses = np.zeros((0, 7))
+        pybullet.setGravity(0, 0, -gravity, physicsClientId=self.client)
+        pybullet.setTimeStep(dt, physicsClientId=self.client)
+        pybullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=self.client)
+
+    def close(self) -> None:
+        """Disconnect; further calls fail."""
+        self._finalizer()
+
+    # -- bodies ---------------------------------------------------------------------------------------------------
+
+    def load(self, urdf: Path, pose: Sequence[float], friction: float) -> int:
+        """Load a one-link URDF at pose (7,) position and xyzw; returns its row in `poses`."""
+        body = pybullet.loadURDF(
+            str(urdf), list(pose[:3]), list(pose[3:]), useMaximalCoordinates=1,
+            flags=pybullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=self.client,
+        )  # fmt: skip
+        # contacts multiply the two bodies' coefficients
+        pybullet.changeDynamics(
+            body, -1, linearDamping=0, angularDamping=0, lateralFriction=math.sqrt(friction), restitution=0,
+            rollingFriction=0, spinningFriction=0, physicsClientId=self.client,
+        )  # fmt: skip
+        pybullet.setCollisionFilterGroupMask(
+            body, -1, _ROBOT_GROUP, _ROBOT_GROUP | _GROUND_GROUP, physicsClientId=self.client
+        )
+        self.bodies.append(body)
+        self.poses = np.zeros((len(self.bodies), 7))
+        self._pack = struct.Struct(f"{7 * len(self.bodies)}d")
+        return len(self.bodies) - 1
+
+    def add_ground(self, friction: float) -> None:
+        """The plane z = 0."""
+        shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self.client)
+        self.ground = pybullet.createMultiBody(0, shape, useMaximalCoordinates=1, physicsClientId=self.client)
+        pybullet.changeDynamics(
+            self.ground, -1, lateralFriction=math.sqrt(friction), restitution=0, physicsClientId=self.client
+        )
+        pybullet.setCollisionFilterGroupMask(
+            self.ground, -1, _GROUND_GROUP, _ROBOT_GROUP, physicsClientId=self.client
+        )
+
+    def place(self, poses: FloatArray, velocities: FloatArray | None = None) -> None:
+        """Set every body's pose (b, 7) and velocity (b, 6) linear, angular; at rest by default."""
+        for row, body in enumerate(self.bodies):
+            pybullet.resetBasePositionAndOrientation(
+                body, poses[row, :3].tolist(), poses[row, 3:].tolist(), physicsClientId=self.client
+            )
+            velocity = [0.0] * 6 if velocities is None else velocities[row].tolist()
+            pybullet.resetBaseVelocity(body, velocity[:3], velocity[3:], physicsClientId=self.client)
+
+    # -- the substep ----------------------------------------------------------------------------------------------
+
+    def read_poses(self) -> FloatArray:
+        """Refresh and return `poses` (b, 7): position [m] and quaternion xyzw of every body, in the world."""
+        read, client = pybullet.getBasePositionAndOrientation, self.client
+        values: list[float] = []
+        for body in self.bodies:
+            position, orientation = read(body, client)
+            values += position
+            values += orientation
+        self._pack.pack_into(self.poses, 0, *values)
+        return self.poses
+
+    def step(self, wrenches: FloatArray) -> None:
+        """Apply force and moment (b, 6) about the body centres, world axes, and advance one time step."""
+        force, torque, client = pybullet.applyExternalForce, pybullet.applyExternalTorque, self.client
+        for body, pose, w in zip(self.bodies, self.poses.tolist(), wrenches.tolist(), strict=True):
+            force(body, -1, w[:3], pose[:3], 2, client)
+            torque(body, -1, w[3:], 2, client)
+        pybullet.stepSimulation(client)
+
+    def velocities(self) -> FloatArray:
+        """(b, 6) linear [m/s] and angular [rad/s] velocity of every body, in the world."""
+        return np.array(
+            [sum(pybullet.getBaseVelocity(body, physicsClientId=self.client), ()) for body in self.bodies]
+        )
+
+    # -- state and pictures ---------------------------------------------------------------------------------------
+
+    def save(self) -> int:
+        """Keep the engine's state in memory; `restore` brings it back bitwise."""
+        return pybullet.saveState(physicsClientId=self.client)
+
+    def restore(self, state: int) -> None:
+        pybullet.restoreState(stateId=state, physicsClientId=self.client)
+
+    def contacts(self) -> list[tuple[Any, ...]]:
+        """PyBullet's contact rows."""
+        return list(pybullet.getContactPoints(physicsClientId=self.client))
+
+    def image(self, eye: Sequence[float], target: Sequence[float], width: int, height: int) -> tuple[Any, ...]:
+        """TinyRenderer: rgb (h, w, 3) uint8 and the (4, 4) world-to-clip matrix used."""
+        view = pybullet.computeViewMatrix(list(eye), list(target), [0, 0, 1], physicsClientId=self.client)
+        projection = pybullet.computeProjectionMatrixFOV(40, width / height, 0.05, 20, physicsClientId=self.client)
+        _, _, pixels, _, _ = pybullet.getCameraImage(
+            width, height, view, projection, shadow=1, lightDirection=[1, 1, 3],
+            renderer=pybullet.ER_TINY_RENDERER, physicsClientId=self.client,
+        )  # fmt: skip
+        rgb = np.asarray(pixels, dtype=np.uint8).reshape(height, width, 4)[:, :, :3]
+        clip = np.reshape(projection, (4, 4), order="F") @ np.reshape(view, (4, 4), order="F")
+        return rgb, clip
+
+
+def packaged_urdf(name: str) -> Path | None:
+    """Path of a URDF that ships with the package, or None."""
+    path = resources.files("tensegym.urdf") / name
+    return Path(str(path)) if path.is_file() else None

@@ -1,0 +1,48 @@
+"""Compiled readings of a robot's state: feet, energies. Poses (b, 7) position, xyzw; velocities (b, 6) linear, angular."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from .cable_forces import STIFFNESS, TWO_WAY, _rotation, cable_geometry, points_in_world
+
+
+@njit(cache=True)
+def nodes_in_world(poses, velocities, feet, foot_points):
+    """Positions (n, 3) [m] and velocities (n, 3) [m/s] of points fixed in bodies ``feet`` (n,) at ``foot_points``."""
+    positions, speeds = np.empty((len(feet), 3)), np.empty((len(feet), 3))
+    points_in_world(poses, feet, foot_points, positions)
+    for p in range(len(feet)):
+        body = feet[p]
+        r0 = positions[p, 0] - poses[body, 0]
+        r1 = positions[p, 1] - poses[body, 1]
+        r2 = positions[p, 2] - poses[body, 2]
+        v = velocities[body]
+        speeds[p, 0] = v[0] + v[4] * r2 - v[5] * r1
+        speeds[p, 1] = v[1] + v[5] * r0 - v[3] * r2
+        speeds[p, 2] = v[2] + v[3] * r1 - v[4] * r0
+    return positions, speeds
+
+
+@njit(cache=True)
+def mechanical_energy(poses, velocities, masses, inertias, gravity, ends, cables, natural):
+    """Kinetic, gravity (zero at z = 0) and elastic energy [J]."""
+    kinetic, potential, elastic = 0.0, 0.0, 0.0
+    rotation = np.empty((3, 3))
+    for b in range(len(poses)):
+        _rotation(poses[b, 3:], rotation)
+        v = velocities[b]
+        kinetic += 0.5 * masses[b] * (v[0] ** 2 + v[1] ** 2 + v[2] ** 2)
+        for i in range(3):
+            spin = rotation[0, i] * v[3] + rotation[1, i] * v[4] + rotation[2, i] * v[5]
+            kinetic += 0.5 * inertias[b, i] * spin * spin
+        potential += masses[b] * gravity * poses[b, 2]
+    count = len(ends)
+    arms, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
+    cable_geometry(poses, ends, cables, arms, directions, lengths)
+    for c in range(count):
+        stretch = lengths[c] - natural[c]
+        if stretch > 0 or cables[c, TWO_WAY] == 1:
+            elastic += 0.5 * cables[c, STIFFNESS] * stretch * stretch
+    return kinetic, potential, elastic
