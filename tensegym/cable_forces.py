@@ -25,7 +25,7 @@ INVERSE_MASS, INVERSE_TRANSVERSE, INVERSE_AXIAL, SPIN_DAMPING = range(4)
 DRIVE_WORK, ELECTRICAL_ENERGY, CENTRE_PATH, FOOT_PATH, FOOT_PATH_SUM = range(5)
 ACCOUNT_SIZE = 5
 GROUND_TOLERANCE = 1e-3  # m; a foot whose gap to the plane is below this is grounded
-_MAX_SWEEPS = 200
+_MAX_SWEEPS, _TOLERANCE = 200, 1e-7  # of the implicit solve; tension changes below 1e-7 of the largest end it
 
 
 @njit(cache=True)
@@ -161,7 +161,7 @@ def implicit_tensions(poses, ends, cables, bodies, arms, directions, lengths, ra
             change = max(change, abs(new - tensions[c]))
             scale = max(scale, abs(new))
             tensions[c] = new
-        if change <= 1e-10 * scale:
+        if change <= _TOLERANCE * scale:
             break
 
 

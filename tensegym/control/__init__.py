@@ -1,0 +1,1 @@
+"""Controllers: one-step tipping, the open-loop walker."""

@@ -1,0 +1,33 @@
+"""Learning curves as a picture."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from pathlib import Path
+
+
+def draw_curve(runs: Mapping[str, Path], out: Path) -> None:
+    """One line a run: median speed of the training episodes against environment steps; slip share below it."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    figure, (top, bottom) = plt.subplots(2, 1, sharex=True, figsize=(7, 6))
+    for name, path in runs.items():
+        with path.open() as file:
+            rows = list(csv.DictReader(file))
+        steps = [float(r["steps"]) / 1000 for r in rows]
+        top.plot(steps, [float(r["speed_lps"]) for r in rows], label=name)
+        bottom.plot(steps, [float(r["slip_share"]) for r in rows], label=name)
+    top.set_ylabel("speed along heading [rod lengths/s]")
+    bottom.set_ylabel("slip share [-]")
+    bottom.set_xlabel("environment steps [thousand]")
+    top.set_title("Median over the episodes of each chunk, exploration noise on")
+    for axis in (top, bottom):
+        axis.grid(alpha=0.3)
+        axis.legend()
+    figure.tight_layout()
+    figure.savefig(out, dpi=120)
+    plt.close(figure)
