@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 
 from . import structure as structures
-from .equilibrium import form_find, prestress
+from .equilibrium import check_balance, form_find
 from .errors import DesignError
 from .structure import FloatArray, IntArray, Structure
 
@@ -164,7 +164,7 @@ class RobotDesign:
                     payload_tension=self.payload.pretension if self.payload else 0.0,
                 )
             else:
-                prestress(standing, self.elastic_cable.pretension)
+                check_balance(standing, self.elastic_cable.pretension)
         object.__setattr__(self, "_standing", standing)
         shortest = standing.lengths(standing.cables).min() - 2 * self.attachment_radius
         if self.cable_natural_lengths.min(initial=1.0) <= 0:

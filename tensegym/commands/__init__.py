@@ -1,0 +1,1 @@
+"""The commands of `tensegym` that need no learning library: one dataclass a command, one a file."""
