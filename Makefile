@@ -1,6 +1,46 @@
-.PHONY: test lint
-test:
-	.venv/bin/python -m pytest
-lint:
-	.venv/bin/ruff check .
-	.venv/bin/mypy
+# Each target works on a bare clone with Python 3.11 and make: the first one to run sets up .venv.
+PYTHON ?= python3.11
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.ready
+export OPENBLAS_NUM_THREADS := 1
+export OMP_NUM_THREADS := 1
+
+.PHONY: help setup test lint demo train bench clean
+
+help:
+	@echo "make demo   roll the shipped policy: demo/metrics.json, gait.png, roll.mp4"
+	@echo "make test   all tests"
+	@echo "make lint   ruff and mypy"
+	@echo "make train  train the rolling policy from scratch: runs/rolling-s0"
+	@echo "make bench  measured ratios: the substep against the bare engine, flexure models against their FEM"
+
+setup: $(STAMP)
+
+$(STAMP): pyproject.toml constraints.txt
+	@command -v $(PYTHON) >/dev/null || { \
+	  echo "no $(PYTHON) here: PyBullet has wheels up to Python 3.11. Install Python 3.11, or run make PYTHON=/path/to/python3.11"; exit 1; }
+	@$(PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if v == (3, 11) else \
+	  f"Python {v[0]}.{v[1]} has no PyBullet wheel and would have to compile it: run make PYTHON=python3.11")'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[train,dev]'
+	@touch $(STAMP)
+
+test: $(STAMP)
+	$(BIN)/python -m pytest
+
+lint: $(STAMP)
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+demo: $(STAMP)
+	$(BIN)/tensegym roll --out demo
+
+train: $(STAMP)
+	$(BIN)/tensegym train --config rolling --seed 0
+
+bench: $(STAMP)
+	$(BIN)/python benchmarks/substep.py
+
+clean:
+	rm -rf $(VENV) build *.egg-info demo runs

@@ -16,11 +16,10 @@ import numpy as np
 from numba import njit
 
 from .drives import CURRENT, PULLED, VOLTAGE, drive_step
+from .rotation import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE, turn_bodies
 
 # Columns of a cable's parameter row
 LOCAL_A, LOCAL_B, STIFFNESS, DAMPING, TWO_WAY = slice(0, 3), slice(3, 6), 6, 7, 8
-# Columns of a body's parameter row; axis is the body's z
-INVERSE_MASS, INVERSE_TRANSVERSE, INVERSE_AXIAL, SPIN_DAMPING = range(4)
 # Entries of the running account, all since the last reset
 DRIVE_WORK, ELECTRICAL_ENERGY, CENTRE_PATH, FOOT_PATH, FOOT_PATH_SUM = range(5)
 ACCOUNT_SIZE = 5
@@ -166,16 +165,6 @@ def implicit_tensions(poses, ends, cables, bodies, arms, directions, lengths, ra
 
 
 @njit(cache=True)
-def _spin(pose, last, dt):
-    """Angular velocity about the body's z axis [rad/s] from two successive orientations."""
-    x0, y0, z0, w0 = last[3], last[4], last[5], last[6]
-    x1, y1, z1, w1 = pose[3], pose[4], pose[5], pose[6]
-    turn = w0 * z1 - z0 * w1 - x0 * y1 + y0 * x1  # z part of conj(q0) q1, in body axes
-    scalar = w0 * w1 + x0 * x1 + y0 * y1 + z0 * z1
-    return 2 * turn * np.sign(scalar) / dt
-
-
-@njit(cache=True)
 def substep(poses, last_poses, ends, cables, bodies, natural, lengths, tensions, rates, drive_constants, drives,
             first_driven, feet, foot_points, foot_radius, foot_positions, masses, account, dt, implicit, wrenches):  # fmt: skip
     """One kernel a substep: geometry, tensions, wrenches (b, 6) in world axes about body centres, drives, account.
@@ -204,13 +193,7 @@ def substep(poses, last_poses, ends, cables, bodies, natural, lengths, tensions,
             w[3] += pull * (r[1] * n[2] - r[2] * n[1])
             w[4] += pull * (r[2] * n[0] - r[0] * n[2])
             w[5] += pull * (r[0] * n[1] - r[1] * n[0])
-    for b in range(len(poses)):
-        if bodies[b, SPIN_DAMPING] > 0:
-            moment = -bodies[b, SPIN_DAMPING] * _spin(poses[b], last_poses[b], dt)
-            x, y, z, w = poses[b, 3], poses[b, 4], poses[b, 5], poses[b, 6]
-            wrenches[b, 3] += moment * 2 * (x * z + y * w)
-            wrenches[b, 4] += moment * 2 * (y * z - x * w)
-            wrenches[b, 5] += moment * (1 - 2 * (x * x + y * y))
+    turn_bodies(poses, last_poses, bodies, dt, wrenches)
 
     for d in range(len(drives)):
         c = first_driven + d

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from . import cable_forces as kernel
+from . import rotation
 from .design import RobotDesign
 from .structure import FloatArray, IntArray
 
@@ -83,10 +84,10 @@ def cable_arrays(design: RobotDesign) -> CableArrays:
         inertias.append([0.4 * payload.mass * payload.radius**2] * 3)
 
     bodies = np.zeros((len(masses), 4))
-    bodies[:, kernel.INVERSE_MASS] = 1 / np.array(masses)
-    bodies[:, kernel.INVERSE_TRANSVERSE] = 1 / np.array(inertias)[:, 0]
-    bodies[:, kernel.INVERSE_AXIAL] = 1 / np.array(inertias)[:, 2]
-    bodies[: len(rods), kernel.SPIN_DAMPING] = design.spin_damping
+    bodies[:, rotation.INVERSE_MASS] = 1 / np.array(masses)
+    bodies[:, rotation.INVERSE_TRANSVERSE] = 1 / np.array(inertias)[:, 0]
+    bodies[:, rotation.INVERSE_AXIAL] = 1 / np.array(inertias)[:, 2]
+    bodies[: len(rods), rotation.SPIN_DAMPING] = design.spin_damping
     return CableArrays(
         ends=np.array(ends, dtype=np.int64).reshape(-1, 2),
         params=np.array(params, dtype=float).reshape(-1, 9),

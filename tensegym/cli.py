@@ -16,6 +16,12 @@ from .report import Report
 
 COMMANDS: dict[str, tuple[str, str]] = {
     # name: ("module:Class" or "module:COMMANDS" for a group, one line of help)
+    "roll": ("tensegym.train.evaluate:Roll", "watch the shipped policy roll: table, metrics.json, gait.png, roll.mp4"),
+    "step": ("tensegym.commands.step:Step", "tip from one face onto the next; --all-faces: which pull tips which face"),
+    "simulate": ("tensegym.commands.simulate:Simulate", "drive-angle commands in, the whole motion out, as CSV"),
+    "validate": ("tensegym.commands.validate:Validate", "the physics against closed forms: expected, measured, tolerance"),
+    "train": ("tensegym.train.ppo:Train", "train a rolling policy with PPO; resumable"),
+    "evaluate": ("tensegym.train.evaluate:Evaluate", "judge a policy and the baselines over many seeds"),
     "flexure": ("tensegym.flexure.commands:COMMANDS", "flexible joints: table, curves, fit, track, solve"),
 }
 
@@ -23,9 +29,8 @@ COMMANDS: dict[str, tuple[str, str]] = {
 def usage(commands: dict[str, tuple[str, str]], program: str) -> str:
     width = max(map(len, commands), default=0)
     rows = [f"  {name:<{width}}  {text}" for name, (_, text) in commands.items()]
-    return "\n".join(
-        [f"usage: {program} COMMAND [options]", "", "commands:", *rows, "", f"`{program} COMMAND --help` lists its options."]
-    )
+    tail = f"`{program} COMMAND --help` lists its options; every command takes --json."
+    return "\n".join([f"usage: {program} COMMAND [options]", "", "commands:", *rows, "", tail])
 
 
 def _load(target: str) -> Any:

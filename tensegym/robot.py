@@ -20,6 +20,7 @@ from .design import RobotDesign
 from .errors import DesignError, SimulationError
 from .faces import Faces, hull_faces, resting_rotation
 from .readings import mechanical_energy, nodes_in_world
+from .rotation import step_back
 from .structure import FloatArray
 from .urdf_model import rod_files, urdf_files
 
@@ -166,6 +167,8 @@ class TensegrityRobot:
         self.time = 0.0
         poses = self.world.read_poses()
         self._last_poses[:] = poses
+        if velocities is not None:
+            step_back(self._last_poses, velocities, self.dt)
         kernel.points_in_world(poses, self.cables.feet, self.cables.foot_points, self._foot_positions)
         arms, directions = np.empty((len(self.lengths), 2, 3)), np.empty((len(self.lengths), 3))
         kernel.cable_geometry(poses, self.cables.ends, self.cables.params, arms, directions, self.lengths)
@@ -223,10 +226,15 @@ class TensegrityRobot:
         return self.cables.masses @ self.world.read_poses()[:, :3] / self.cables.masses.sum()
 
     def momentum_in_world(self) -> tuple[FloatArray, FloatArray]:
-        """Linear [kg m/s] and angular [kg m^2/s] momentum about the world origin, each (3,)."""
-        v, poses = self.world.velocities(), self.world.read_poses()
+        """Linear [kg m/s] and angular [kg m^2/s] momentum about the world origin, each (3,).
+
+        The engine's velocities live half a step before its poses, as in the leapfrog scheme, and so does this.
+        """
+        v, poses = self.world.velocities(), self.world.read_poses().copy()
         linear = self.cables.masses[:, None] * v[:, :3]
-        turns = Rotation.from_quat(poses[:, 3:])
+        middle = poses.copy()
+        step_back(middle, v, self.dt / 2)
+        turns = Rotation.from_quat(middle[:, 3:])
         spin = turns.apply(self.cables.inertias * turns.inv().apply(v[:, 3:]))
         return linear.sum(axis=0), (np.cross(poses[:, :3], linear) + spin).sum(axis=0)
 
