@@ -7,7 +7,7 @@ from gymnasium.envs.registration import register, registry
 
 ROLLING = "tensegym/SixRodRolling-v0"
 EPISODE_SECONDS = 20.0
-CONTROL_PERIOD = 0.2
+CONTROL_PERIOD = 0.4
 
 if ROLLING not in registry:
     register(

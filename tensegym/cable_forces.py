@@ -24,7 +24,7 @@ LOCAL_A, LOCAL_B, STIFFNESS, DAMPING, TWO_WAY = slice(0, 3), slice(3, 6), 6, 7, 
 DRIVE_WORK, ELECTRICAL_ENERGY, CENTRE_PATH, FOOT_PATH, FOOT_PATH_SUM = range(5)
 ACCOUNT_SIZE = 5
 GROUND_TOLERANCE = 1e-3  # m; a foot whose gap to the plane is below this is grounded
-_MAX_SWEEPS, _TOLERANCE = 200, 1e-7  # of the implicit solve; tension changes below 1e-7 of the largest end it
+_MAX_SWEEPS, _TOLERANCE = 200, 1e-6  # of the implicit solve; changes below 1e-6 of the largest tension end it
 
 
 @njit(cache=True)
@@ -130,6 +130,14 @@ def _mobility(poses, ends, bodies, arms, directions, out):
             out[d, c] = total
 
 
+@njit(cache=True, fastmath={"reassoc", "contract"})
+def _dot(a, b):
+    total = 0.0
+    for i in range(len(a)):
+        total += a[i] * b[i]
+    return total
+
+
 @njit(cache=True)
 def implicit_tensions(poses, ends, cables, bodies, arms, directions, lengths, rates, natural, dt, tensions):
     """Tensions (c,) [N] at the end of the step; ``tensions`` holds the last step's as the starting guess."""
@@ -151,9 +159,7 @@ def implicit_tensions(poses, ends, cables, bodies, arms, directions, lengths, ra
         for c in range(count):
             if weight[c] == np.inf:
                 continue
-            rest = target[c]
-            for d in range(count):
-                rest -= mobility[c, d] * tensions[d]
+            rest = target[c] - _dot(mobility[c], tensions)
             new = tensions[c] + (rest - weight[c] * tensions[c]) / (mobility[c, c] + weight[c])
             if cables[c, TWO_WAY] == 0 and new < 0:
                 new = 0.0

@@ -25,13 +25,13 @@ class TrainConfig:
     env: dict[str, Any] = field(default_factory=dict)
     episode_seconds: float = 20.0
     n_envs: int = 8
-    steps: int = 300_000
-    rollout: int = 128
+    steps: int = 320_000
+    rollout: int = 100
     chunk: int = 8
-    batch_size: int = 256
+    batch_size: int = 200
     n_epochs: int = 10
-    learning_rate: float = 3e-4
-    final_learning_rate: float = 3e-5
+    learning_rate: float = 4e-4
+    final_learning_rate: float = 5e-5
     gamma: float = 0.95
     gae_lambda: float = 0.95
     clip_range: float = 0.2

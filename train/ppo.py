@@ -191,7 +191,7 @@ class _Watch(BaseCallback):
             self.num_timesteps, (self.state["seconds"] + time.perf_counter() - self.began) / 3600, len(self.gaits),
             np.median(speeds), np.quantile(speeds, 0.1), np.median([g["slip_share"] for g in self.gaits]),
             np.mean([g["tips"] for g in self.gaits]), np.max([g["audit_excess"] for g in self.gaits]),
-            float(self.model.policy.log_std.exp().mean()),
+            float(self.model.policy.log_std.detach().exp().mean()),
         )  # fmt: skip
         fresh = not self.path.exists()
         with self.path.open("a", newline="") as file:
