@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import fields
 from typing import Any, ClassVar
 
 import gymnasium as gym
@@ -14,6 +16,7 @@ from tensegym.design import RobotDesign
 from tensegym.design_file import as_design
 from tensegym.errors import DesignError, SimulationError
 from tensegym.gait import GaitMeter
+from tensegym.picture import draw_in_window, render
 from tensegym.robot import TensegrityRobot
 
 from . import CONTROL_PERIOD
@@ -22,7 +25,49 @@ from .reward import RewardWeights, reward_terms
 
 
 class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
-    """Placeholder docstring."""
+    """Roll a tensegrity robot along a wanted direction by winding its stiff cables.
+
+    One step commands a spool angle to every drive and holds it for the control period, while drives, cables and
+    contacts are integrated at the physics step.
+
+    Action, `Box(-1, 1, (w,))`, one entry a drive (6 for the six-rod robot): -1 lets the cable out to its rest length,
+    +1 winds it in to the design's ``max_pull``.
+
+    Observation ``full``, in this order; the heading frame has x along the wanted direction and z up, and horizontal
+    positions are from the centre of mass:
+
+    | part | entries (six rods) | unit | bound |
+    |---|---|---|---|
+    | node position | 12 x 3 | rod lengths | 2 |
+    | node velocity | 12 x 3 | rod lengths/s | 50 m/s over the rod length |
+    | foot contact | 12 | 0 or 1 | 1 |
+    | drive angle | 6 | -1 released, +1 deepest pull | 2 |
+    | drive speed | 6 | of the rotor's speed limit | 1 |
+    | drive current | 6 | of the current limit | 1 |
+    | tension | 30 (36 with payload) | five pretensions | what the stiffest cable gives across the position bound |
+
+    Observation ``onboard``: rod axis (6 x 3) and turn rate across the axis (6 x 3, in 5 rad/s) in the heading frame,
+    as an inertial unit on each rod reports them, then drive angle, speed and current.
+
+    An episode that leaves a bound has diverged or come apart, and ends; so the bounds hold by construction.
+
+    Reward: progress of the centre of mass along the wanted direction, less ``slip`` times the path of the grounded
+    feet's centres (mean over the feet), both in rod lengths, less ``energy`` times the joules drawn. The terms are in
+    ``info["reward_terms"]``; ``info["gait"]`` holds the gait metrics since the reset.
+
+    Start: at rest on a random face, at a random heading, towards a random direction, settled for ``settle`` seconds.
+
+    Ends: never by itself in a sound simulation (`gymnasium.make` adds the time limit of 20 s, which truncates); a
+    diverged one terminates, with ``info["termination"]`` saying why and zeros as the observation.
+
+    Arguments: design (a preset, a TOML file, a dict as one, or a RobotDesign), observation, control_period [s], dt
+    [s], settle [s], reward (weights to change, see RewardWeights), render_mode (None, rgb_array, human).
+
+    ``reset(options=...)``: face (index), heading [rad], direction [rad], and design, which puts another robot with as
+    many nodes, cables and drives into the same environment.
+
+    Version 0: first.
+    """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array", "human"], "render_fps": round(1 / CONTROL_PERIOD)}
 
@@ -41,6 +86,9 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
             raise DesignError(f"observation = {observation!r} is not one of {', '.join(OBSERVATIONS)}")
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise DesignError(f"render_mode = {render_mode!r} is not one of None, rgb_array, human")
+        if reward and set(reward) - {f.name for f in fields(RewardWeights)}:
+            allowed = ", ".join(f.name for f in fields(RewardWeights))
+            raise DesignError(f"unknown reward weight in {reward!r}; allowed: {allowed}")
         self.substeps = round(control_period / dt)
         if not (self.substeps >= 1 and math.isclose(self.substeps * dt, control_period, rel_tol=1e-6)):
             raise DesignError(f"control_period = {control_period!r} s must be a whole number of steps of dt = {dt!r} s")
@@ -54,6 +102,17 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         self.observation_space = spaces.Box(-bound, bound, dtype=np.float32)
         self.action_space = spaces.Box(-1.0, 1.0, (len(self.robot.drives),), dtype=np.float32)
         self.direction = np.array([1.0, 0.0])
+        self.watch: Callable[[TensegrityRobot], None] | None = None  # called every `watch_period` while stepping
+        self.watch_period = control_period
+
+    def _advance(self) -> None:
+        if self.watch is None:
+            self.robot.step(self.substeps)
+            return
+        parts = max(1, round(self.substeps * self.dt / self.watch_period))
+        for part in np.array_split(np.arange(self.substeps), parts):
+            self.robot.step(len(part))
+            self.watch(self.robot)
 
     def _build(self, design: RobotDesign) -> TensegrityRobot:
         robot = TensegrityRobot(design, dt=self.dt, gui=self.render_mode == "human")
@@ -83,14 +142,19 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         return observation, {"face": face, "heading": heading, "direction": direction}
 
     def _change_design(self, design: RobotDesign) -> None:
-        old = self.robot
-        self.robot = self._build(design)
-        old.close()
+        old_robot, old_observer = self.robot, self.observer
+        robot = self._build(design)
         if self.observer.bound.shape != self.observation_space.shape:
+            size = self.observer.bound.size
+            self.observer = old_observer
+            robot.close()
             raise DesignError(
-                f"the new design observes {self.observer.bound.size} values, this environment "
-                f"{self.observation_space.shape}; make an environment for it"
+                f"the new design observes {size} values, this environment {self.observation_space.shape[0]}; "
+                "make an environment for it"
             )
+        self.robot = robot
+        self.observation_space = spaces.Box(-self.observer.bound, self.observer.bound, dtype=np.float32)
+        old_robot.close()
 
     def _observe(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         values, nodes, velocities = self.observer.read(self.robot, self.direction)
@@ -102,7 +166,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         robot.command((action + 1) / 2 * robot.command_limit)
         reason = None
         try:
-            robot.step(self.substeps)
+            self._advance()
             observation, nodes, velocities = self._observe()
         except SimulationError as error:
             reason = str(error)
@@ -110,7 +174,6 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
             if not (np.abs(observation) <= self.observer.bound).all():
                 reason = f"left the observation's bounds ({NODE_REACH:g} rod lengths from the centre)"
         if reason:
-            self.render_state = None
             return (np.zeros(self.observation_space.shape, np.float32), 0.0, True, False,
                     {"termination": reason, "gait": self.meter.metrics().as_dict()})  # fmt: skip
         self.meter.update(nodes, velocities)
@@ -123,8 +186,18 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
             account.electrical_energy - self._account.electrical_energy,
         )
         self._along, self._account = along, account
+        if self.render_mode == "human":
+            self.render()
         info = {"reward_terms": terms, "gait": self.meter.metrics().as_dict()}
         return observation, sum(terms.values()), False, False, info
+
+    def render(self) -> np.ndarray | None:
+        """(360, 480, 3) picture that follows the robot, cables coloured by tension; None in human mode."""
+        if self.render_mode == "rgb_array":
+            return render(self.robot)
+        if self.render_mode == "human":
+            draw_in_window(self.robot)
+        return None
 
     def close(self) -> None:
         self.robot.close()

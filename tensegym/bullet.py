@@ -41,6 +41,7 @@ class World:
         self._finalizer = weakref.finalize(self, _disconnect, self.client)
         self.bodies: list[int] = []
         self.ground: int | None = None
+        self._lines: list[int] = []
         self._pack = struct.Struct("0d")
         self.poses = np.zeros((0, 7))
         pybullet.setGravity(0, 0, -gravity, physicsClientId=self.client)
@@ -84,12 +85,20 @@ class World:
         )
 
     def place(self, poses: FloatArray, velocities: FloatArray | None = None) -> None:
-        """Set every body's pose (b, 7) and velocity (b, 6) linear, angular; at rest by default."""
-        for row, body in enumerate(self.bodies):
-            pybullet.resetBasePositionAndOrientation(
-                body, poses[row, :3].tolist(), poses[row, 3:].tolist(), physicsClientId=self.client
-            )
-            velocity = [0.0] * 6 if velocities is None else velocities[row].tolist()
+        """Set every body's pose (b, 7) and velocity (b, 6) linear, angular; at rest by default.
+
+        Setting a pose leaves the engine's world inertia as it was, which only a step renews. So the bodies are placed
+        twice: out of reach of the ground for a step at rest, then where they belong.
+        """
+        away = poses.copy()
+        away[:, 2] += 100.0
+        self._set(away, np.zeros((len(poses), 6)))
+        pybullet.stepSimulation(self.client)
+        self._set(poses, np.zeros((len(poses), 6)) if velocities is None else velocities)
+
+    def _set(self, poses: FloatArray, velocities: FloatArray) -> None:
+        for body, pose, velocity in zip(self.bodies, poses.tolist(), velocities.tolist(), strict=True):
+            pybullet.resetBasePositionAndOrientation(body, pose[:3], pose[3:], physicsClientId=self.client)
             pybullet.resetBaseVelocity(body, velocity[:3], velocity[3:], physicsClientId=self.client)
 
     # -- the substep ----------------------------------------------------------------------------------------------
@@ -143,6 +152,20 @@ class World:
         rgb = np.asarray(pixels, dtype=np.uint8).reshape(height, width, 4)[:, :, :3]
         clip = np.reshape(projection, (4, 4), order="F") @ np.reshape(view, (4, 4), order="F")
         return rgb, clip
+
+
+    def draw_lines(self, ends: FloatArray, colours: Sequence[Sequence[float]]) -> None:
+        """Lines (k, 2, 3) in the window, replacing those drawn before."""
+        old = self._lines or [-1] * len(ends)
+        self._lines = [
+            pybullet.addUserDebugLine(a.tolist(), b.tolist(), list(colour), 2, replaceItemUniqueId=line,
+                                      physicsClientId=self.client)
+            for (a, b), colour, line in zip(ends, colours, old, strict=True)
+        ]  # fmt: skip
+
+    def look_at(self, target: FloatArray, distance: float) -> None:
+        """Move the window's camera."""
+        pybullet.resetDebugVisualizerCamera(distance, 45, -25, target.tolist(), physicsClientId=self.client)
 
 
 def packaged_urdf(name: str) -> Path | None:

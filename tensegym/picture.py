@@ -40,7 +40,6 @@ def render(robot: TensegrityRobot, width: int = 480, height: int = 360, yaw: flo
     eye = target + distance * np.array([np.cos(yaw) * 0.9, np.sin(yaw) * 0.9, 0.45])
     rgb, clip = robot.world.image(eye.tolist(), target.tolist(), width, height)
     image = rgb.copy()
-    _draw_ground_ticks(image, clip, target, robot.design.length)
     ends = cable_ends_in_world(robot)
     pixels = _project(ends.reshape(-1, 3), clip, width, height).reshape(-1, 2, 2)
     driven = range(robot.cables.first_driven, robot.cables.first_driven + len(robot.drives))
@@ -50,19 +49,11 @@ def render(robot: TensegrityRobot, width: int = 480, height: int = 360, yaw: flo
     return image
 
 
-def _draw_ground_ticks(image: NDArray[np.uint8], clip: FloatArray, target: FloatArray, length: float) -> None:
-    """A cross at every half rod length of the ground, so that motion shows."""
-    step = length / 2
-    cells = np.arange(-4, 5)
-    base = np.round(target[:2] / step)
-    for i in cells:
-        for j in cells:
-            x, y = (base[0] + i) * step, (base[1] + j) * step
-            arm = 0.04 * length
-            points = np.array([[x - arm, y, 0], [x + arm, y, 0], [x, y - arm, 0], [x, y + arm, 0]])
-            p = _project(points, clip, image.shape[1], image.shape[0])
-            _line(image, p[0], p[1], (120, 120, 120), 1)
-            _line(image, p[2], p[3], (120, 120, 120), 1)
+def draw_in_window(robot: TensegrityRobot) -> None:
+    """Draw the cables into PyBullet's own window and let the camera follow."""
+    colours = [[c / 255 for c in tension_colour(t)] for t in robot.tensions]
+    robot.world.draw_lines(cable_ends_in_world(robot), colours)
+    robot.world.look_at(robot.centre_of_mass_in_world(), 3.0 * robot.design.length)
 
 
 def _project(points: FloatArray, clip: FloatArray, width: int, height: int) -> FloatArray:

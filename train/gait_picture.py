@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tensegym.drives import CURRENT, ROTOR_ANGLE
 from tensegym.envs.rolling import RollingEnv
 from tensegym.picture import render
 
@@ -16,9 +17,10 @@ class GaitRecorder:
     """Call it with the environment after every step; keeps what `draw_gait` and `write_video` need."""
 
     def __init__(self, env: RollingEnv, frames: bool) -> None:
-        self.fps = max(1, round(1 / (env.substeps * env.dt)))
-        self._keep_frames = frames
+        self.fps = 20
         self.frames: list[np.ndarray] = []
+        if frames:
+            env.watch, env.watch_period = (lambda robot: self.frames.append(render(robot))), 1 / self.fps
         self.times: list[float] = []
         self.centres: list[np.ndarray] = []
         self.tensions: list[np.ndarray] = []
@@ -38,11 +40,9 @@ class GaitRecorder:
         self.times.append(robot.time)
         self.centres.append(robot.centre_of_mass_in_world())
         self.tensions.append(robot.tensions.copy())
-        self.currents.append(robot.drives[:, 3].copy())
-        self.angles.append(robot.drives[:, 1] / drive.gear_ratio)
+        self.currents.append(robot.drives[:, CURRENT].copy())
+        self.angles.append(robot.drives[:, ROTOR_ANGLE] / drive.gear_ratio)
         self.faces.append(env.meter.face)
-        if self._keep_frames:
-            self.frames.append(render(robot))
 
 
 def draw_gait(record: GaitRecorder, rows: Sequence[dict[str, Any]], out: Path) -> None:
@@ -92,7 +92,7 @@ def draw_gait(record: GaitRecorder, rows: Sequence[dict[str, Any]], out: Path) -
 
 
 def write_video(frames: Sequence[np.ndarray], fps: int, out: Path) -> None:
-    """H.264, one frame a control step."""
+    """H.264."""
     from moviepy import ImageSequenceClip
 
     ImageSequenceClip(list(frames), fps=fps).write_videofile(str(out), logger=None, audio=False)

@@ -11,6 +11,7 @@ import json
 import os
 import platform
 import shutil
+import subprocess
 import sys
 import time
 from dataclasses import dataclass
@@ -96,7 +97,9 @@ class Train:
 
 def _versions() -> dict[str, str]:
     names = ("tensegym", "pybullet", "numpy", "numba", "gymnasium", "stable-baselines3", "torch")
-    return {"python": platform.python_version(), **{n: version(n) for n in names}, "command": " ".join(sys.argv)}
+    found = {"python": platform.python_version(), **{n: version(n) for n in names}}
+    commit = subprocess.run(["git", "-C", Path(__file__).parent, "rev-parse", "HEAD"], capture_output=True, text=True)
+    return found | {"commit": commit.stdout.strip() or "not a git checkout"}
 
 
 def train(config: TrainConfig, seed: int, out: Path, state: dict[str, Any]) -> int:
