@@ -28,7 +28,7 @@ _MAX_SWEEPS, _TOLERANCE = 200, 1e-6  # of the implicit solve; changes below 1e-6
 
 
 @njit(cache=True)
-def _rotation(q, out):
+def rotation_matrix(q, out):
     """Rotation matrix of a unit quaternion xyzw, body to world."""
     x, y, z, w = q[0], q[1], q[2], q[3]
     out[0, 0] = 1 - 2 * (y * y + z * z)
@@ -50,7 +50,7 @@ def points_in_world(poses, bodies, locals_, out):
     for p in range(len(bodies)):
         body = bodies[p]
         if body != last:
-            _rotation(poses[body, 3:], rotation)
+            rotation_matrix(poses[body, 3:], rotation)
             last = body
         for i in range(3):
             out[p, i] = poses[body, i] + (
@@ -66,7 +66,7 @@ def cable_geometry(poses, ends, cables, arms, directions, lengths):
     """
     rotations = np.empty((len(poses), 3, 3))
     for b in range(len(poses)):
-        _rotation(poses[b, 3:], rotations[b])
+        rotation_matrix(poses[b, 3:], rotations[b])
     for c in range(len(ends)):
         square = 0.0
         for i in range(3):
@@ -92,7 +92,7 @@ def explicit_tensions(cables, lengths, rates, natural, tensions):
 
 
 @njit(cache=True)
-def _mobility(poses, ends, bodies, arms, directions, out):
+def mobility_matrix(poses, ends, bodies, arms, directions, out):
     """A = J M^-1 J^T (c, c) [1/kg] for bodies symmetric about their z axis."""
     count = len(ends)
     turns = np.empty((count, 2, 3))  # angular part of a unit tension's generalised force
@@ -143,7 +143,7 @@ def implicit_tensions(poses, ends, cables, bodies, arms, directions, lengths, ra
     """Tensions (c,) [N] at the end of the step; ``tensions`` holds the last step's as the starting guess."""
     count = len(ends)
     mobility = np.empty((count, count))
-    _mobility(poses, ends, bodies, arms, directions, mobility)
+    mobility_matrix(poses, ends, bodies, arms, directions, mobility)
     weight, target = np.empty(count), np.empty(count)
     for c in range(count):
         k, damping = cables[c, STIFFNESS], cables[c, DAMPING]

@@ -119,10 +119,12 @@ def explicit_step_limit(arrays: CableArrays) -> float:
     largest eigenvalues; that is sufficient, so a little below the true limit.
     """
     count = len(arrays.ends)
+    if not count:
+        return np.inf
     arms, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
     kernel.cable_geometry(arrays.rest_poses, arrays.ends, arrays.params, arms, directions, lengths)
     mobility = np.empty((count, count))
-    kernel._mobility(arrays.rest_poses, arrays.ends, arrays.bodies, arms, directions, mobility)
+    kernel.mobility_matrix(arrays.rest_poses, arrays.ends, arrays.bodies, arms, directions, mobility)
     stiff = np.sqrt(arrays.params[:, kernel.STIFFNESS])
     damp = np.sqrt(arrays.params[:, kernel.DAMPING])
     k = np.linalg.eigvalsh(stiff[:, None] * mobility * stiff)[-1]

@@ -166,7 +166,7 @@ class RobotDesign:
             else:
                 check_balance(standing, self.elastic_cable.pretension)
         object.__setattr__(self, "_standing", standing)
-        shortest = standing.lengths(standing.cables).min() - 2 * self.attachment_radius
+        shortest = standing.lengths(standing.cables).min(initial=1.0) - 2 * self.attachment_radius
         if self.cable_natural_lengths.min(initial=1.0) <= 0:
             limit = self.elastic_cable.stiffness * shortest
             raise DesignError(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from .cable_forces import STIFFNESS, TWO_WAY, _rotation, cable_geometry, points_in_world
+from .cable_forces import STIFFNESS, TWO_WAY, rotation_matrix, cable_geometry, points_in_world
 
 
 @njit(cache=True)
@@ -31,7 +31,7 @@ def mechanical_energy(poses, velocities, masses, inertias, gravity, ends, cables
     kinetic, potential, elastic = 0.0, 0.0, 0.0
     rotation = np.empty((3, 3))
     for b in range(len(poses)):
-        _rotation(poses[b, 3:], rotation)
+        rotation_matrix(poses[b, 3:], rotation)
         v = velocities[b]
         kinetic += 0.5 * masses[b] * (v[0] ** 2 + v[1] ** 2 + v[2] ** 2)
         for i in range(3):
