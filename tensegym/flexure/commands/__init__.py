@@ -1,0 +1,9 @@
+"""The commands of `tensegym flexure`, one module each."""
+
+COMMANDS: dict[str, tuple[str, str]] = {
+    "table": ("tensegym.flexure.commands.table:Table", "the paper's Tables 1 and 2 beside ours; held-out errors"),
+    "curves": ("tensegym.flexure.commands.curves:Curves", "torque against angle, drift, stiffness diagrams: PNG, CSV"),
+    "fit": ("tensegym.flexure.commands.fit:Fit", "fit a joint model to a hinge or to measured data"),
+    "track": ("tensegym.flexure.commands.track:Track", "pictures of a stand in, angle and position out, as CSV"),
+    "solve": ("tensegym.flexure.commands.solve:Solve", "loads in, poses out, by any of the models"),
+}
