@@ -69,7 +69,10 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
     Version 0: first.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array", "human"], "render_fps": round(1 / CONTROL_PERIOD)}
+    metadata: ClassVar[dict[str, Any]] = {  # type: ignore[misc]  # the base class annotates an instance variable
+        "render_modes": ["rgb_array", "human"],
+        "render_fps": round(1 / CONTROL_PERIOD),
+    }
 
     def __init__(
         self,
@@ -99,8 +102,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         self._observation_kind = observation
         self.robot = self._build(as_design(design))
         bound = self.observer.bound
-        self.observation_space = spaces.Box(-bound, bound, dtype=np.float32)
-        self.action_space = spaces.Box(-1.0, 1.0, (len(self.robot.drives),), dtype=np.float32)
+        self.observation_space: spaces.Box = spaces.Box(-bound, bound, dtype=np.float32)
+        self.action_space: spaces.Box = spaces.Box(-1.0, 1.0, (len(self.robot.drives),), dtype=np.float32)
         self.direction = np.array([1.0, 0.0])
         self.watch: Callable[[TensegrityRobot], None] | None = None  # called every `watch_period` while stepping
         self.watch_period = control_period

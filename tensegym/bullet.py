@@ -111,7 +111,7 @@ class World:
             position, orientation = read(body, client)
             values += position
             values += orientation
-        self._pack.pack_into(self.poses, 0, *values)
+        self._pack.pack_into(self.poses.data, 0, *values)
         return self.poses
 
     def step(self, wrenches: FloatArray) -> None:
@@ -152,7 +152,6 @@ class World:
         rgb = np.asarray(pixels, dtype=np.uint8).reshape(height, width, 4)[:, :, :3]
         clip = np.reshape(projection, (4, 4), order="F") @ np.reshape(view, (4, 4), order="F")
         return rgb, clip
-
 
     def draw_lines(self, ends: FloatArray, colours: Sequence[Sequence[float]]) -> None:
         """Lines (k, 2, 3) in the window, replacing those drawn before."""

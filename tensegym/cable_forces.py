@@ -172,7 +172,8 @@ def implicit_tensions(poses, ends, cables, bodies, arms, directions, lengths, ra
 
 @njit(cache=True)
 def substep(poses, last_poses, ends, cables, bodies, natural, lengths, tensions, rates, drive_constants, drives,
-            first_driven, feet, foot_points, foot_radius, foot_positions, masses, account, dt, implicit, wrenches):  # fmt: skip
+            first_driven, feet, foot_points, foot_radius, foot_positions, masses, account, dt, implicit,
+            wrenches):  # fmt: skip
     """One kernel a substep: geometry, tensions, wrenches (b, 6) in world axes about body centres, drives, account.
 
     Everything after ``cables`` and before ``dt`` is state and is updated in place; ``wrenches`` is written.

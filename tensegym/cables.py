@@ -47,7 +47,7 @@ def cable_arrays(design: RobotDesign) -> CableArrays:
     masses = [design.rod(i).mass for i in range(len(rods))]
     inertias = []
     for i, length in enumerate(structure.rod_lengths):
-        across = design.rod(i).transverse_inertia(length)
+        across = design.rod(i).transverse_inertia(float(length))
         inertias.append([across, across, design.rod(i).axial_inertia])
 
     body_of_node = np.empty(len(nodes), dtype=np.int64)
@@ -55,8 +55,8 @@ def cable_arrays(design: RobotDesign) -> CableArrays:
     for i, (a, b) in enumerate(rods):
         body_of_node[[a, b]] = i
         local_of_node[a, 2], local_of_node[b, 2] = -structure.rod_lengths[i] / 2, structure.rod_lengths[i] / 2
-    foot_radii = np.array([design.rod(body).foot_radius for body in body_of_node])
-    foot_radii = np.maximum(foot_radii, [design.rod(body).tube_outer_radius for body in body_of_node])
+    kinds = [design.rod(body) for body in body_of_node.tolist()]
+    foot_radii = np.array([max(rod.foot_radius, rod.tube_outer_radius) for rod in kinds])
 
     ends, params, natural = [], [], []
     for pairs, cable, lengths in (

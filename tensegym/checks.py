@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq
@@ -92,9 +93,13 @@ def equal_rods(damping: float) -> RobotDesign:
     """Six equal rods and the 24 elastic cables tied on the axes, no spin damping: the closed forms' robot."""
     whole = six_rod()
     return RobotDesign(
-        structure=Structure(whole.nodes, whole.rods, whole.cables, np.zeros((0, 2), int)), active_rod=Rod(), passive_rod=Rod(), elastic_cable=ElasticCable(damping=damping), attachment_radius=0.0,
+        structure=Structure(whole.nodes, whole.rods, whole.cables, np.zeros((0, 2), int)),
+        active_rod=Rod(),
+        passive_rod=Rod(),
+        elastic_cable=ElasticCable(damping=damping),
+        attachment_radius=0.0,
         spin_damping=0.0,
-    )  # fmt: skip
+    )
 
 
 def breathe(damping: float, dt: float = 1e-3, periods: int = 30) -> tuple[float, float]:
@@ -116,7 +121,7 @@ def breathe(damping: float, dt: float = 1e-3, periods: int = 30) -> tuple[float,
     falls = np.flatnonzero((s[:-1] > 0) & (s[1:] <= 0))
     crossings = (falls + s[falls] / (s[falls] - s[falls + 1])) * dt
     frequency = (len(crossings) - 1) / (crossings[-1] - crossings[0])
-    peaks = [s[a:b].max() for a, b in zip(falls[:-1], falls[1:], strict=True)]
+    peaks = [s[a:b].max() for a, b in pairwise(falls)]
     decrement = np.log(peaks[0] / peaks[-1]) / (len(peaks) - 1)
     return float(frequency), float(decrement / (2 * np.pi))
 
@@ -185,8 +190,8 @@ def free_flight(dt: float = 1e-3, seconds: float = 2.0, seed: int = 0) -> FreeFl
                 slack_tension = max(slack_tension, np.abs(robot.tensions[slack]).max(initial=0.0))
                 slack_seen += int(slack.sum())
             now = robot.momentum_in_world()
-            linear = max(linear, np.linalg.norm(now[0] - start[0]) / np.linalg.norm(start[0]))
-            angular = max(angular, np.linalg.norm(now[1] - start[1]) / np.linalg.norm(start[1]))
+            linear = max(linear, float(np.linalg.norm(now[0] - start[0]) / np.linalg.norm(start[0])))
+            angular = max(angular, float(np.linalg.norm(now[1] - start[1]) / np.linalg.norm(start[1])))
     return FreeFlight(float(linear), float(angular), float(least), float(slack_tension), slack_seen)
 
 

@@ -27,9 +27,8 @@ def check_ranges(group: object) -> None:
         inside = number and low <= value <= high and not (f.metadata["open_low"] and value == low)
         if not inside:
             bracket = "(" if f.metadata["open_low"] else "["
-            raise DesignError(
-                f"{type(group).__name__}.{f.name} = {value!r} is outside {bracket}{low:g}, {high:g}] {f.metadata['unit']}"
-            )
+            allowed = f"{bracket}{low:g}, {high:g}] {f.metadata['unit']}".rstrip()
+            raise DesignError(f"{type(group).__name__}.{f.name} = {value!r} is outside {allowed}")
 
 
 class Checked:
@@ -170,8 +169,8 @@ class RobotDesign:
         if self.cable_natural_lengths.min(initial=1.0) <= 0:
             limit = self.elastic_cable.stiffness * shortest
             raise DesignError(
-                f"ElasticCable.pretension = {self.elastic_cable.pretension!r} stretches a cable of {shortest:.4g} m from "
-                f"nothing; at stiffness {self.elastic_cable.stiffness:g} N/m it must be below {limit:.4g} N"
+                f"ElasticCable.pretension = {self.elastic_cable.pretension!r} stretches a cable of {shortest:.4g} m "
+                f"from nothing; at stiffness {self.elastic_cable.stiffness:g} N/m it must be below {limit:.4g} N"
             )
         if self.payload is not None and self.payload_natural_length <= 0:
             raise DesignError(

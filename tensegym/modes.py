@@ -17,7 +17,7 @@ from .structure import FloatArray, Structure
 
 @dataclass(frozen=True)
 class Modes:
-    """frequencies (k,) [Hz], ascending, rigid motions left out; shapes (k, n, 3): node displacements, mass-normalised."""
+    """frequencies (k,) [Hz], ascending, no rigid motions; shapes (k, n, 3): node displacements, mass-normalised."""
 
     frequencies: FloatArray
     shapes: FloatArray

@@ -72,6 +72,6 @@ def _line(image: NDArray[np.uint8], a: FloatArray, b: FloatArray, colour: tuple[
     points = np.linspace(a, b, count)
     for dx in range(thickness):
         for dy in range(thickness):
-            cols, rows = (points + [dx, dy]).round().astype(int).T
+            cols, rows = (points + np.array([dx, dy])).round().astype(int).T
             inside = (cols >= 0) & (cols < image.shape[1]) & (rows >= 0) & (rows < image.shape[0])
             image[rows[inside], cols[inside]] = colour

@@ -1,11 +1,14 @@
-"""Compiled readings of a robot's state: feet, energies. Poses (b, 7) position, xyzw; velocities (b, 6) linear, angular."""
+"""Compiled readings of a robot's state: feet, energies.
+
+Poses (b, 7) are position and xyzw, velocities (b, 6) linear and angular.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 from numba import njit
 
-from .cable_forces import STIFFNESS, TWO_WAY, rotation_matrix, cable_geometry, points_in_world
+from .cable_forces import STIFFNESS, TWO_WAY, cable_geometry, points_in_world, rotation_matrix
 
 
 @njit(cache=True)

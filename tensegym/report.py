@@ -11,7 +11,8 @@ from typing import Any
 class Report:
     """Result of one command.
 
-    ``text`` is the readable table, ``data`` the same facts as plain JSON types, ``passed`` False makes the exit status 1.
+    ``text`` is the readable table, ``data`` the same facts as plain JSON types; ``passed`` False makes the exit
+    status 1.
     """
 
     text: str

@@ -6,7 +6,6 @@ column names). Lengths in m.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,7 +59,7 @@ class Structure:
         if (uses != 1).any():
             bad = int(np.flatnonzero(uses != 1)[0])
             raise StructureError(
-                f"node {bad + 1} is on {uses[bad]} rods; in a class-1 tensegrity every node is the end of exactly one rod"
+                f"node {bad + 1} is on {uses[bad]} rods; in a class-1 tensegrity each node ends exactly one rod"
             )
 
     @property
@@ -78,7 +77,7 @@ class Structure:
         return Structure(np.asarray(nodes, dtype=float), self.rods, self.cables, self.stiff_cables)
 
 
-def _pairs(name: str, pairs: ArrayLike | Iterable[tuple[int, int]], nodes: FloatArray) -> IntArray:
+def _pairs(name: str, pairs: ArrayLike, nodes: FloatArray) -> IntArray:
     array = np.array(pairs, dtype=np.int64).reshape(-1, 2) if np.size(pairs) else np.zeros((0, 2), dtype=np.int64)
     seen: set[frozenset[int]] = set()
     for a, b in array:

@@ -46,16 +46,20 @@ def test_angular_velocity_from_two_orientations(seed, w):
 def test_a_lone_spinning_rod_keeps_energy_momentum_and_spin(rate):
     """Bullet alone loses 12 % and 55 % of the energy here in 2 s."""
     whole = six_rod()
-    bare = Structure(whole.nodes, whole.rods, np.zeros((0, 2), int), np.zeros((0, 2), int))
+    nodes = whole.nodes.copy()
+    for i, rod in enumerate(whole.rods):
+        nodes[rod] += [0, 0, 5.0 * i]  # out of one another's way
+    bare = Structure(nodes, whole.rods, np.zeros((0, 2), int), np.zeros((0, 2), int))
     design = RobotDesign(structure=bare, form_finding=False, spin_damping=0.0)
     with TensegrityRobot(design, ground=False) as robot:
         poses = robot.cables.rest_poses
-        apart = poses[:, :3] - poses[:, :3].mean(axis=0)
+        apart = 0.2 * (poses[:, :3] - poses[:, :3].mean(axis=0))
         turning = [Rotation.from_quat(p[3:]).apply(rate) for p in poses]
         robot.reset_rotated(Rotation.identity(), np.hstack([apart, turning]))
         energy, momentum = robot.energies().kinetic, robot.momentum_in_world()[1]
         robot.step(2000)
         assert robot.energies().kinetic == pytest.approx(energy, rel=1e-4)
-        np.testing.assert_allclose(robot.momentum_in_world()[1], momentum, rtol=1e-9)
+        drift = np.linalg.norm(robot.momentum_in_world()[1] - momentum) / np.linalg.norm(momentum)
+        assert drift < 1e-7
         local = Rotation.from_quat(robot.poses_in_world[0, 3:]).inv().apply(robot.world.velocities()[0, 3:])
         assert local[2] == pytest.approx(rate[2], rel=1e-6)

@@ -36,7 +36,7 @@ class Controller:
     def start(self, env: RollingEnv) -> Callable[[int], Act]:
         """Returns a function of an episode's seed that returns what acts in that episode."""
         if self.kind == "random":
-            return lambda seed: lambda _, rng=np.random.default_rng(seed): rng.uniform(-1, 1, env.action_space.shape)
+            return lambda seed: _random(np.random.default_rng(seed), env.action_space.shape)
         if self.kind == "walker":
             table = load_table(Path(self.path)) if self.path else tip_table(env.robot)
             walker = Walker(table)
@@ -48,6 +48,10 @@ class Controller:
             return episode
         act = load_policy(Path(self.path or ""), env)
         return lambda seed: act
+
+
+def _random(rng: np.random.Generator, shape: tuple[int, ...]) -> Act:
+    return lambda _: rng.uniform(-1, 1, shape)
 
 
 def shipped(name: str) -> Path:
@@ -79,7 +83,7 @@ def load_policy(folder: Path, env: RollingEnv) -> Act:
                              ("action", model.action_space, env.action_space)):  # fmt: skip
         if own.shape != given.shape:
             raise InputError(
-                f"policy {folder.name} was trained on {what}s of shape {own.shape}, this environment has {given.shape}; "
+                f"policy {folder.name} was trained on {what}s of shape {own.shape}, here they are {given.shape}; "
                 "evaluate it with the observation it was trained with"
             )
     with (folder / "vecnormalize.pkl").open("rb") as file:

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
 from tensegym.report import Report, table
@@ -71,7 +69,8 @@ class Evaluate:
             trials["open-loop walker"] = (Controller("walker", "walker", shipped_table(), plain), {})
             trials["random commands"] = (Controller("random", "random", None, plain), {})
         results = {
-            name: run_trials(c, seeds, seconds=self.seconds, jobs=self.jobs, env=env) for name, (c, env) in trials.items()
+            name: run_trials(controller, seeds, seconds=self.seconds, jobs=self.jobs, env=env)
+            for name, (controller, env) in trials.items()
         }
         summaries = {name: summarise(rows) for name, rows in results.items()}
         data = {"policy": self.policy, "dt": dt, "seconds": self.seconds, "summaries": summaries, "episodes": results}

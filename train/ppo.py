@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import gymnasium as gym
 import numpy as np
@@ -31,6 +31,7 @@ from stable_baselines3.common.utils import set_random_seed
 from stable_baselines3.common.vec_env import SubprocVecEnv, VecMonitor, VecNormalize
 from tqdm import tqdm
 
+from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
 from tensegym.report import Report, table
 
@@ -43,7 +44,7 @@ CURVE_FIELDS = ("steps", "hours", "episodes", "speed_lps", "speed_lps_p10", "sli
 
 def make_env(config: TrainConfig) -> gym.Env:
     """One environment as the config describes it, with its time limit."""
-    import tensegym.envs  # noqa: F401  worker processes start empty
+    import tensegym.envs
 
     period = config.env.get("control_period", tensegym.envs.CONTROL_PERIOD)
     return gym.make(config.env_id, max_episode_steps=round(config.episode_seconds / period), **config.env)
@@ -133,7 +134,7 @@ def train(config: TrainConfig, seed: int, out: Path, state: dict[str, Any]) -> i
 def _new_model(config: TrainConfig, env: VecNormalize, seed: int) -> PPO:
     probe = make_env(config)
     arguments = {"hidden": list(config.hidden), "log_std_init": config.log_std_init,
-                 **symmetry_arguments(probe.unwrapped)}  # fmt: skip
+                 **symmetry_arguments(cast(RollingEnv, probe.unwrapped))}  # fmt: skip
     probe.close()
     return PPO(
         SymmetricPolicy, env, learning_rate=config.learning_rate, n_steps=config.rollout,

@@ -46,7 +46,13 @@ def symmetry_arguments(env: RollingEnv) -> dict[str, list[list[int]]]:
 class _SymmetricNetworks(nn.Module):
     """Mean action and value, each averaged over the group."""
 
-    def __init__(self, size: int, hidden: list[int], index: torch.Tensor, sign: torch.Tensor, back: torch.Tensor) -> None:
+    index: torch.Tensor
+    sign: torch.Tensor
+    back: torch.Tensor
+
+    def __init__(
+        self, size: int, hidden: list[int], index: torch.Tensor, sign: torch.Tensor, back: torch.Tensor
+    ) -> None:
         super().__init__()
         self.register_buffer("index", index)
         self.register_buffer("sign", sign)
@@ -96,10 +102,10 @@ class SymmetricPolicy(ActorCriticPolicy):
         super().__init__(*args, ortho_init=False, **kwargs)
 
     def _build_mlp_extractor(self) -> None:
-        self.mlp_extractor = _SymmetricNetworks(self.features_dim, self._hidden, *self._group).to(self.device)  # type: ignore[assignment]
+        self.mlp_extractor = _SymmetricNetworks(self.features_dim, self._hidden, *self._group).to(self.device)
 
     def _build(self, lr_schedule: Any) -> None:
         super()._build(lr_schedule)
         # the networks above end in actions and values already
-        self.action_net, self.value_net = nn.Identity(), nn.Identity()  # type: ignore[assignment]
+        self.action_net, self.value_net = nn.Identity(), nn.Identity()
         self.optimizer = self.optimizer_class(self.parameters(), lr=lr_schedule(1), **self.optimizer_kwargs)

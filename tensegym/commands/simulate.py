@@ -8,13 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import tyro
-from typing import Annotated
 
 from tensegym import drives
-from tensegym.files import replace_file
 from tensegym.design_file import as_design
 from tensegym.errors import InputError
+from tensegym.files import replace_file
 from tensegym.gait import GaitMeter
 from tensegym.report import Report, table
 from tensegym.robot import TensegrityRobot
@@ -150,4 +148,5 @@ def _row(robot: TensegrityRobot) -> list[float]:
         values += [row[drives.COMMAND], row[drives.ROTOR_ANGLE] / robot.design.drive.gear_ratio, row[drives.CURRENT],
                    row[drives.LOAD_TORQUE], robot.natural_lengths[first + d]]  # fmt: skip
     energies, account = robot.energies(), robot.account()
-    return [*values, energies.kinetic, energies.gravity, energies.elastic, account.drive_work, account.electrical_energy]
+    values += [energies.kinetic, energies.gravity, energies.elastic, account.drive_work, account.electrical_energy]
+    return values

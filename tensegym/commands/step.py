@@ -24,7 +24,10 @@ FRAMES = 6
 
 @dataclass(frozen=True)
 class Step:
-    """One step: the drives pull and release, the robot tips onto the next face. Writes storyboard.png and drives.png."""
+    """One step: the drives pull and release, the robot tips onto the next face.
+
+    Writes storyboard.png and drives.png.
+    """
 
     face: str = ""
     """Face to start on, by its nodes, such as 3-5-12; default: the first one that a single drive tips."""
@@ -44,7 +47,8 @@ class Step:
     def run(self) -> Report:
         design = as_design(self.design)
         if not 0 < self.depth <= design.stiff_cable.max_pull:
-            raise InputError(f"depth = {self.depth!r} is outside (0, {design.stiff_cable.max_pull:g}], the design's max_pull")
+            limit = design.stiff_cable.max_pull
+            raise InputError(f"depth = {self.depth!r} is outside (0, {limit:g}], the design's max_pull")
         with TensegrityRobot(design, dt=self.dt) as robot:
             count = len(robot.drives)
             if not all(1 <= d <= count for d in self.drives) or len(set(self.drives)) < len(self.drives):
@@ -63,8 +67,8 @@ class Step:
         data = {"from_face": names[tip.from_face], "to_face": names[tip.to_face], "tipped": tip.tipped,
                 "drives": [d + 1 for d in tip.pull.drives], "depth": tip.pull.depth, "travel_m": travel,
                 "peak_tension_N": tip.peak_tension, "out": str(self.out)}  # fmt: skip
-        text = table(["from face", "to face", "drives", "depth", "travel m", "peak tension N"],
-                     [[data["from_face"], data["to_face"], pulled, tip.pull.depth, travel, tip.peak_tension]])  # fmt: skip
+        row = [data["from_face"], data["to_face"], pulled, tip.pull.depth, travel, tip.peak_tension]
+        text = table(["from face", "to face", "drives", "depth", "travel m", "peak tension N"], [row])
         if not tip.tipped:
             text += "\nThe robot did not tip; try other --drives or a larger --depth."
         return Report(text, data, passed=tip.tipped)
