@@ -1,0 +1,196 @@
+"""Newton's method under rotation or load control, and paths of states, compiled."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from .beam import OPTIONS
+from .chain import recover
+from .frame import assemble, backward, copy_state, factor, forward, memory, place_ends, strain_energy
+
+CONVERGED, BUCKLED, FAILED = 0, 1, 2
+ROTATION, LOAD = 0, 1
+# a state asked for: turn [rad]; dead force [N] and moment [N m] at the tip; direction scaled under rotation control
+# (force x, y and moment about the tip); distance of the dead force's point beyond the tip along the tip body's x [m]
+THETA, FX, FY, MZ, WX, WY, WM, ARM = range(8)
+TOLERANCE = 1e-7  # largest increment [rad, element lengths]; Newton converges quadratically, so the error is its square
+ITERATIONS = 15
+LARGEST_TURN = 0.25  # rad between accepted states, so that no instability is stepped over
+SMALLEST_STEP = 1e-4  # of a path, where it is given up
+
+
+@njit(**OPTIONS)
+def newton(mesh, mem, mode, ask):
+    """Solve for one asked state from where ``mem`` is: (converged, multiplier, held stable, free stable).
+
+    Held stable: a minimum of the energy at the asked turn; free stable: a minimum under the dead load.
+    """
+    tip = len(mesh.rest) - 1
+    size = 3 * tip
+    matrix, right, step = mem.matrix, mem.right[0], mem.right[1]
+    scale = 1 / mesh.rest[tip, 0] if mesh.rest[tip, 0] != 0.0 else 1.0
+    multiplier = 0.0
+    for _ in range(ITERATIONS):
+        inner = assemble(mesh, mem)
+        turn = mem.poses[tip, 2]
+        lever_x, lever_y = ask[ARM] * math.cos(turn), ask[ARM] * math.sin(turn)
+        for i in range(size):
+            right[i] = -right[i]
+        right[size - 3] += ask[FX]
+        right[size - 2] += ask[FY]
+        right[size - 1] += ask[MZ] + lever_x * ask[FY] - lever_y * ask[FX]
+        matrix[size - 1, size - 1] += lever_x * ask[FX] + lever_y * ask[FY]
+        negative, last = factor(matrix)
+        forward(matrix, right)
+        if mode == ROTATION:
+            step[:] = 0.0
+            step[size - 3], step[size - 2], step[size - 1] = ask[WX], ask[WY], ask[WM]
+            forward(matrix, step)
+            delta = ask[THETA] - turn
+            multiplier = (matrix[size - 1, size - 1] * delta - right[size - 1]) / step[size - 1]
+            for i in range(size - 1):
+                right[i] = (right[i] + multiplier * step[i]) / matrix[i, i]
+            right[size - 1] = delta
+        else:
+            for i in range(size):
+                right[i] /= matrix[i, i]
+        backward(matrix, right)
+        largest = 0.0
+        for b in range(tip):
+            largest = max(largest, abs(right[3 * b]) * scale, abs(right[3 * b + 1]) * scale, abs(right[3 * b + 2]))
+        if not largest < 10.0:
+            return False, multiplier, False, False
+        for m in range(len(mesh.ends)):
+            a, b, count, first = mesh.ends[m]
+            real = mesh.real[m]
+            for end, body, row, x, y in ((0, a, first, real[5], real[6]), (1, b, first + count, real[7], real[8])):
+                if body > 0:
+                    c, s = math.cos(mem.poses[body, 2]), math.sin(mem.poses[body, 2])
+                    k = 3 * (body - 1)
+                    mem.step[end, 0] = right[k] - (s * x + c * y) * right[k + 2]
+                    mem.step[end, 1] = right[k + 1] + (c * x - s * y) * right[k + 2]
+                    mem.step[end, 2] = right[k + 2]
+                else:
+                    mem.step[end, :] = 0.0
+            inside = recover(mem.nodes[first:], mem.axial[first:], real, count, a == 0, mem.strains[first:],
+                             mem.back[first:], mem.step[0], mem.step[1])  # fmt: skip
+            largest = max(largest, inside)
+        for b in range(1, tip + 1):
+            for i in range(3):
+                mem.poses[b, i] += right[3 * (b - 1) + i]
+        for m in range(len(mesh.ends)):
+            place_ends(mesh, mem, m)
+        if largest < TOLERANCE:
+            held = negative + inner == 0
+            return True, multiplier, held, held and not last
+    return False, multiplier, False, False
+
+
+@njit(**OPTIONS)
+def path(mesh, mem, spare, mode, start, target):
+    """Follow the states between two asked ones: (status, multiplier, fraction reached, free stable).
+
+    BUCKLED: between the last stable state and a slightly larger load the tangent loses its positive definiteness (a
+    bifurcation), or no state is near any more (a limit point); the fraction says where.
+    """
+    tip = len(mesh.rest) - 1
+    done, stride = 0.0, 1.0
+    unstable = False
+    ask = np.empty(8)
+    multiplier, free = 0.0, True
+    while done < 1.0:
+        stride = min(stride, 1.0 - done)
+        end = done + stride if done + stride < 1.0 - 1e-12 else 1.0
+        for i in range(8):
+            ask[i] = start[i] + end * (target[i] - start[i])
+        copy_state(mem, spare)
+        good, factor_, held, free_ = newton(mesh, mem, mode, ask)
+        if good:
+            for b in range(1, tip + 1):
+                if abs(mem.poses[b, 2] - spare.poses[b, 2]) > LARGEST_TURN:
+                    good = False
+        stable = held if mode == ROTATION else free_
+        if good and stable:
+            done, multiplier, free = end, factor_, free_
+            stride *= 2
+            continue
+        unstable = unstable or good
+        copy_state(spare, mem)
+        stride /= 2
+        if stride < SMALLEST_STEP:
+            return (BUCKLED if unstable or mode == LOAD else FAILED), multiplier, done, free
+    return CONVERGED, multiplier, 1.0, free
+
+
+@njit(**OPTIONS)
+def sweep(mesh, mode, asks, from_rest, keep_nodes):
+    """Solve for every row of ``asks`` (n, 8) in turn.
+
+    ``from_rest``: each state by its own path from rest, else from the state before. Returns results (n, 8): turn, tip x
+    and y, force x and y and moment about the tip that hold it, energy, fraction of the path reached; status (n,), free
+    stability (n,), and nodes (n, k, 3) when kept.
+    """
+    count = len(asks)
+    tip = len(mesh.rest) - 1
+    mem, spare, rest = memory(mesh), memory(mesh), memory(mesh)
+    history = [memory(mesh), memory(mesh), memory(mesh)]
+    known = 0
+    results = np.full((count, 8), np.nan)
+    status, stable = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.bool_)
+    nodes = np.zeros((count if keep_nodes else 0, len(mem.nodes), 3))
+    start = np.zeros(8)
+    for i in range(count):
+        ask = asks[i]
+        if from_rest or (i > 0 and status[i - 1] != CONVERGED) or i == 0:
+            copy_state(rest, mem)
+            start[:] = 0.0
+            start[4:] = ask[4:]
+            known = 0
+        state, done = FAILED, 0.0
+        multiplier, free = 0.0, False
+        if known == 3:  # quadratic extrapolation: saves an iteration or two on an even sweep
+            extrapolate(mesh, history[i % 3], history[(i + 1) % 3], history[(i + 2) % 3], mem)
+            good, multiplier, held, free = newton(mesh, mem, mode, ask)
+            near = good and (held if mode == ROTATION else free)
+            before = history[(i + 2) % 3]
+            for b in range(1, tip + 1):
+                near = near and abs(mem.poses[b, 2] - before.poses[b, 2]) < LARGEST_TURN
+            if near:
+                state, done = CONVERGED, 1.0
+            else:
+                copy_state(before, mem)
+        if state != CONVERGED:
+            state, multiplier, done, free = path(mesh, mem, spare, mode, start, ask)
+        status[i], stable[i] = state, free
+        results[i, 7] = done
+        if keep_nodes:
+            nodes[i] = mem.nodes
+        if state != CONVERGED:
+            continue
+        if not from_rest:
+            copy_state(mem, history[i % 3])
+            known = min(known + 1, 3)
+            start[:] = ask
+        turn = mem.poses[tip, 2]
+        if mode == LOAD:
+            multiplier = 0.0
+        c, s = math.cos(turn), math.sin(turn)
+        results[i, 0], results[i, 1], results[i, 2] = turn, mem.poses[tip, 0], mem.poses[tip, 1]
+        results[i, 3] = ask[FX] + multiplier * ask[WX]
+        results[i, 4] = ask[FY] + multiplier * ask[WY]
+        results[i, 5] = ask[MZ] + multiplier * ask[WM] + ask[ARM] * (c * ask[FY] - s * ask[FX])
+        results[i, 6] = strain_energy(mesh, mem)
+    return results, status, stable, nodes
+
+
+@njit(**OPTIONS)
+def extrapolate(mesh, oldest, older, last, mem):
+    """Quadratic extrapolation over three even steps, into ``mem``."""
+    mem.poses[:] = 3 * last.poses - 3 * older.poses + oldest.poses
+    mem.nodes[:] = 3 * last.nodes - 3 * older.nodes + oldest.nodes
+    mem.axial[:] = 3 * last.axial - 3 * older.axial + oldest.axial
+    for m in range(len(mesh.ends)):
+        place_ends(mesh, mem, m)
