@@ -64,20 +64,21 @@ def cable_geometry(poses, ends, cables, arms, directions, lengths):
 
     ends (c, 2) bodies, cables (c, 9) -> arms (c, 2, 3), directions (c, 3), lengths (c,).
     """
-    rotations = np.empty((len(poses), 3, 3))
+    r = np.empty((len(poses), 3, 3))
     for b in range(len(poses)):
-        rotation_matrix(poses[b, 3:], rotations[b])
+        rotation_matrix(poses[b, 3:], r[b])
     for c in range(len(ends)):
         square = 0.0
+        for side in range(2):
+            b, x, y, z = ends[c, side], cables[c, 3 * side], cables[c, 3 * side + 1], cables[c, 3 * side + 2]
+            for i in range(3):
+                arms[c, side, i] = r[b, i, 0] * x + r[b, i, 1] * y + r[b, i, 2] * z
         for i in range(3):
-            for side in range(2):
-                r = rotations[ends[c, side]]
-                o = 3 * side
-                arms[c, side, i] = r[i, 0] * cables[c, o] + r[i, 1] * cables[c, o + 1] + r[i, 2] * cables[c, o + 2]
             directions[c, i] = (poses[ends[c, 1], i] + arms[c, 1, i]) - (poses[ends[c, 0], i] + arms[c, 0, i])
             square += directions[c, i] ** 2
         lengths[c] = np.sqrt(square)
-        directions[c] /= lengths[c]
+        for i in range(3):
+            directions[c, i] /= lengths[c]
 
 
 @njit(cache=True)
@@ -102,18 +103,19 @@ def mobility_matrix(poses, ends, bodies, arms, directions, out):
         x, y, z, w = poses[b, 3], poses[b, 4], poses[b, 5], poses[b, 6]
         axis[b, 0], axis[b, 1], axis[b, 2] = 2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)
     for c in range(count):
+        nx, ny, nz = directions[c, 0], directions[c, 1], directions[c, 2]
         for side in range(2):
             body = ends[c, side]
-            turn, a = turns[c, side], axis[body]
-            r, n = arms[c, side], directions[c]
+            rx, ry, rz = arms[c, side, 0], arms[c, side, 1], arms[c, side, 2]
             sign = 1.0 if side == 1 else -1.0
-            turn[0] = sign * (r[1] * n[2] - r[2] * n[1])
-            turn[1] = sign * (r[2] * n[0] - r[0] * n[2])
-            turn[2] = sign * (r[0] * n[1] - r[1] * n[0])
-            along = turn[0] * a[0] + turn[1] * a[1] + turn[2] * a[2]
+            tx, ty, tz = sign * (ry * nz - rz * ny), sign * (rz * nx - rx * nz), sign * (rx * ny - ry * nx)
+            turns[c, side, 0], turns[c, side, 1], turns[c, side, 2] = tx, ty, tz
             across = bodies[body, INVERSE_TRANSVERSE]
-            for i in range(3):
-                accelerations[c, side, i] = across * turn[i] + (bodies[body, INVERSE_AXIAL] - across) * along * a[i]
+            more = bodies[body, INVERSE_AXIAL] - across
+            more *= tx * axis[body, 0] + ty * axis[body, 1] + tz * axis[body, 2]
+            accelerations[c, side, 0] = across * tx + more * axis[body, 0]
+            accelerations[c, side, 1] = across * ty + more * axis[body, 1]
+            accelerations[c, side, 2] = across * tz + more * axis[body, 2]
     for c in range(count):
         for d in range(c + 1):
             total = 0.0
@@ -128,14 +130,6 @@ def mobility_matrix(poses, ends, bodies, arms, directions, out):
                         total += turns[c, side, i] * accelerations[d, other, i]
             out[c, d] = total
             out[d, c] = total
-
-
-@njit(cache=True, fastmath={"reassoc", "contract"})
-def _dot(a, b):
-    total = 0.0
-    for i in range(len(a)):
-        total += a[i] * b[i]
-    return total
 
 
 @njit(cache=True)
@@ -154,18 +148,26 @@ def implicit_tensions(poses, ends, cables, bodies, arms, directions, lengths, ra
             target[c] = 0.0  # stays slack
             weight[c] = np.inf
             tensions[c] = 0.0
+    residual = target.copy()  # target - A T, kept up to date: a whole row a change, which vectorises
+    for c in range(count):
+        if tensions[c] != 0:
+            for d in range(count):
+                residual[d] -= mobility[c, d] * tensions[c]
     for _ in range(_MAX_SWEEPS):
         change, scale = 0.0, 1e-9
         for c in range(count):
             if weight[c] == np.inf:
                 continue
-            rest = target[c] - _dot(mobility[c], tensions)
-            new = tensions[c] + (rest - weight[c] * tensions[c]) / (mobility[c, c] + weight[c])
+            new = tensions[c] + (residual[c] - weight[c] * tensions[c]) / (mobility[c, c] + weight[c])
             if cables[c, TWO_WAY] == 0 and new < 0:
                 new = 0.0
-            change = max(change, abs(new - tensions[c]))
+            step = new - tensions[c]
+            if step != 0:
+                for d in range(count):
+                    residual[d] -= mobility[c, d] * step
+                tensions[c] = new
+            change = max(change, abs(step))
             scale = max(scale, abs(new))
-            tensions[c] = new
         if change <= _TOLERANCE * scale:
             break
 
@@ -194,12 +196,14 @@ def substep(poses, last_poses, ends, cables, bodies, natural, lengths, tensions,
     for c in range(count):
         for side in range(2):
             pull = tensions[c] if side == 0 else -tensions[c]
-            w, r, n = wrenches[ends[c, side]], arms[c, side], directions[c]
-            for i in range(3):
-                w[i] += pull * n[i]
-            w[3] += pull * (r[1] * n[2] - r[2] * n[1])
-            w[4] += pull * (r[2] * n[0] - r[0] * n[2])
-            w[5] += pull * (r[0] * n[1] - r[1] * n[0])
+            b, fx, fy, fz = ends[c, side], pull * directions[c, 0], pull * directions[c, 1], pull * directions[c, 2]
+            rx, ry, rz = arms[c, side, 0], arms[c, side, 1], arms[c, side, 2]
+            wrenches[b, 0] += fx
+            wrenches[b, 1] += fy
+            wrenches[b, 2] += fz
+            wrenches[b, 3] += ry * fz - rz * fy
+            wrenches[b, 4] += rz * fx - rx * fz
+            wrenches[b, 5] += rx * fy - ry * fx
     turn_bodies(poses, last_poses, bodies, dt, wrenches)
 
     for d in range(len(drives)):
