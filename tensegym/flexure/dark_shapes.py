@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from tensegym.errors import FlexureError
+from ..errors import FlexureError
 
 LEAST_CONTRAST = 0.2
 """Paint must swallow this share of the light at least; a grey wall in soft shade swallows less."""
@@ -136,7 +136,7 @@ def alone(dark: DarkShapes, shape: Shape, margin: int) -> tuple[NDArray[np.float
 
 
 def _measure(labels: NDArray[np.int32], label: int, box: tuple[slice, slice]) -> Shape:
-    pixels = np.argwhere(labels[box] == label) + (box[0].start, box[1].start)
+    pixels = np.argwhere(labels[box] == label) + np.array([box[0].start, box[1].start])
     centre = pixels.mean(axis=0)
     # A pixel is a square, not a point: its own 1/12 px^2 keeps a one-pixel line from having no width.
     moments = np.cov(pixels.T, bias=True) + np.eye(2) / 12.0

@@ -1,9 +1,9 @@
 """Sighting: where the arm is in a picture of the stand, by its own known length and a marker fixed to the stand.
 
 The stand of "Analytical and simulation modeling of flexible joints" (Rakshin and Borisov, 2023, fig. 4): the arm beyond
-the hinge and a reference marker are black on a white ground; a camera looking square at them sees the arm's direction and
-place, and the arm's length says how many pixels a metre has. The marker is a compact spot (disc or square) that stays
-with the hinge's fixed side and lies nearer to the arm's hinge end than to its free end.
+the hinge and a reference marker are black on a white ground; a camera looking square at them sees the arm's direction
+and place, and the arm's length says how many pixels a metre has. The marker is a compact spot (disc or square) that
+stays with the hinge's fixed side and lies nearer to the arm's hinge end than to its free end.
 """
 
 from __future__ import annotations
@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from tensegym.errors import FlexureError
-
+from ..errors import FlexureError
 from .dark_shapes import DarkShapes, Shape, alone, find_dark_shapes
 
 LEAST_ARM_PX = 60.0
