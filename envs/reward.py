@@ -22,7 +22,7 @@ class RewardWeights:
     def __post_init__(self) -> None:
         for f in fields(self):
             value = getattr(self, f.name)
-            if not 0 <= value <= 1e3:
+            if not (isinstance(value, int | float) and 0 <= value <= 1e3):
                 raise DesignError(f"RewardWeights.{f.name} = {value!r} is outside [0, 1000]")
 
 

@@ -58,7 +58,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
     Start: at rest on a random face, at a random heading, towards a random direction, settled for ``settle`` seconds.
 
     Ends: never by itself in a sound simulation (`gymnasium.make` adds the time limit of 20 s, which truncates); a
-    diverged one terminates, with ``info["termination"]`` saying why and zeros as the observation.
+    diverged one terminates, with ``info["termination"]`` saying why, zeros as the observation, and the gait metrics of
+    the last step that could be trusted.
 
     Arguments: design (a preset, a TOML file, a dict as one, or a RobotDesign), observation, control_period [s], dt
     [s], settle [s], reward (weights to change, see RewardWeights), render_mode (None, rgb_array, human).
@@ -92,11 +93,16 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         if reward and set(reward) - {f.name for f in fields(RewardWeights)}:
             allowed = ", ".join(f.name for f in fields(RewardWeights))
             raise DesignError(f"unknown reward weight in {reward!r}; allowed: {allowed}")
+        for name, value, low, high in (("dt", dt, 1e-6, 5e-3), ("control_period", control_period, 1e-6, 60.0),
+                                       ("settle", settle, 0.0, 60.0)):  # fmt: skip
+            if not (isinstance(value, int | float) and low <= value <= high):
+                raise DesignError(f"{name} = {value!r} is outside [{low:g}, {high:g}] s")
         self.substeps = round(control_period / dt)
         if not (self.substeps >= 1 and math.isclose(self.substeps * dt, control_period, rel_tol=1e-6)):
             raise DesignError(f"control_period = {control_period!r} s must be a whole number of steps of dt = {dt!r} s")
         self.weights = RewardWeights(**(reward or {}))
         self.render_mode = render_mode
+        self.metadata = {**type(self).metadata, "render_fps": 1 / control_period}  # type: ignore[misc]
         self.settle_steps = round(settle / dt)
         self.dt = dt
         self._observation_kind = observation
@@ -130,6 +136,12 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         unknown = set(options) - {"design", "face", "heading", "direction"}
         if unknown:
             raise DesignError(f"unknown reset option {sorted(unknown)[0]!r}; allowed: design, face, heading, direction")
+        for name in ("heading", "direction"):
+            value = options.get(name, 0.0)
+            if not (isinstance(value, int | float | np.number) and math.isfinite(value)):
+                raise DesignError(f"reset option {name} = {value!r} must be a finite angle [rad]")
+        if not isinstance(options.get("face", 0), int | np.integer):
+            raise DesignError(f"reset option face = {options['face']!r} must be a whole number")
         if "design" in options:
             self._change_design(as_design(options["design"]))
         face = options.get("face", int(self.np_random.integers(len(self.robot.faces.triangles))))
@@ -139,6 +151,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         self.robot.reset(face, heading)
         self.robot.step(self.settle_steps)
         self.meter = GaitMeter(self.robot, self.direction)
+        self._gait = self.meter.metrics().as_dict()
         self._account = self.robot.account()
         self._along = float(self.direction @ self.robot.centre_of_mass_in_world()[:2])
         observation, _, _ = self._observe()
@@ -147,16 +160,20 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
     def _change_design(self, design: RobotDesign) -> None:
         old_robot, old_observer = self.robot, self.observer
         robot = self._build(design)
-        if self.observer.bound.shape != self.observation_space.shape:
-            size = self.observer.bound.size
+        new, old = self.observer, old_observer
+        if [(p.name, p.rows) for p in new.parts] != [(p.name, p.rows) for p in old.parts]:
             self.observer = old_observer
             robot.close()
+            rows = ", ".join(
+                f"{p.name} {p.rows} (here {q.rows})" for p, q in zip(new.parts, old.parts, strict=True)
+                if p.rows != q.rows
+            )  # fmt: skip
             raise DesignError(
-                f"the new design observes {size} values, this environment {self.observation_space.shape[0]}; "
+                f"design {design.name!r} observes {new.bound.size} values, this environment {old.bound.size}: {rows}; "
                 "make an environment for it"
             )
         self.robot = robot
-        self.observation_space = spaces.Box(-self.observer.bound, self.observer.bound, dtype=np.float32)
+        self.observation_space = spaces.Box(-new.bound, new.bound, dtype=np.float32)
         old_robot.close()
 
     def _observe(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -165,6 +182,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         action = np.clip(np.asarray(action, dtype=float), -1, 1)
+        if action.shape != self.action_space.shape:
+            raise DesignError(f"an action has shape {self.action_space.shape}, one entry a drive; given {action.shape}")
         robot = self.robot
         robot.command((action + 1) / 2 * robot.command_limit)
         reason = None
@@ -178,7 +197,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
                 reason = f"left the observation's bounds ({NODE_REACH:g} rod lengths from the centre)"
         if reason:
             return (np.zeros(self.observation_space.shape, np.float32), 0.0, True, False,
-                    {"termination": reason, "gait": self.meter.metrics().as_dict()})  # fmt: skip
+                    {"termination": reason, "reward_terms": reward_terms(self.weights, 0.0, 0.0, 0.0),
+                     "gait": self._gait})  # fmt: skip
         self.meter.update(nodes, velocities)
         account, length = robot.account(), robot.design.length
         along = float(self.direction @ robot.centre_of_mass_in_world()[:2])
@@ -191,7 +211,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         self._along, self._account = along, account
         if self.render_mode == "human":
             self.render()
-        info = {"reward_terms": terms, "gait": self.meter.metrics().as_dict()}
+        self._gait = self.meter.metrics().as_dict()
+        info = {"reward_terms": terms, "gait": self._gait}
         return observation, sum(terms.values()), False, False, info
 
     def render(self) -> np.ndarray | None:
