@@ -52,18 +52,25 @@ def run(argv: list[str], commands: dict[str, tuple[str, str]] = COMMANDS, progra
     if name not in commands:
         print(f"{program}: error: unknown command {name!r}; one of: {', '.join(commands)}", file=sys.stderr)
         return 2
-    target = _load(commands[name][0])
-    if isinstance(target, dict):
-        return run(rest, target, f"{program} {name}")
-
-    import tyro
-
-    as_json = "--json" in rest
-    command = tyro.cli(target, args=[a for a in rest if a != "--json"], prog=f"{program} {name} [--json]",
-                       config=(tyro.conf.OmitArgPrefixes,))
     try:
+        target = _load(commands[name][0])
+        if isinstance(target, dict):
+            return run(rest, target, f"{program} {name}")
+
+        import tyro
+
+        as_json = "--json" in rest
+        command = tyro.cli(target, args=[a for a in rest if a != "--json"], prog=f"{program} {name} [--json]",
+                           config=(tyro.conf.OmitArgPrefixes,))
         report: Report = command.run()
-    except (TensegymError, FileNotFoundError, PermissionError) as error:
+    except ModuleNotFoundError as error:
+        if str(error.name).startswith("tensegym"):
+            raise
+        print(f"{program} {name}: error: {error.name} is not installed; install tensegym[train]", file=sys.stderr)
+        return 2
+    except BrokenPipeError:
+        raise
+    except (TensegymError, OSError, UnicodeDecodeError) as error:
         print(f"{program} {name}: error: {error}", file=sys.stderr)
         return 2
     print(json.dumps(report.data, allow_nan=False) if as_json else report.text)

@@ -115,7 +115,7 @@ def test_a_step_counts_its_tips_and_its_energy():
 @pytest.mark.xfail(strict=True, reason="Bullet's single friction direction lets loaded feet creep by a step's pull")
 @pytest.mark.parametrize("face", [2, 3, 4])
 def test_a_robot_at_rest_stays_where_it_is(face):
-    """Undriven, on feet that friction must hold against the cables' pull: 0.8 is four times what that takes."""
+    """Undriven: friction holds the feet against the cables' pull."""
     with TensegrityRobot(dt=2e-3) as robot:
         robot.reset(face)
         robot.step(1500)

@@ -43,14 +43,29 @@ class TrainConfig:
     def __post_init__(self) -> None:
         for name in ("n_envs", "steps", "rollout", "chunk", "batch_size", "n_epochs"):
             value = getattr(self, name)
-            if not (isinstance(value, int) and value >= 1):
+            if not (isinstance(value, int) and not isinstance(value, bool) and value >= 1):
                 raise InputError(f"training config: {name} = {value!r} must be a whole number, 1 or more")
-        for name in ("learning_rate", "final_learning_rate", "episode_seconds"):
-            if not 0 < getattr(self, name) < 1e3:
-                raise InputError(f"training config: {name} = {getattr(self, name)!r} must be above 0")
-        for name in ("gamma", "gae_lambda", "clip_range"):
-            if not 0 < getattr(self, name) <= 1:
-                raise InputError(f"training config: {name} = {getattr(self, name)!r} is outside (0, 1]")
+        for name, low, high, ends in (
+            ("learning_rate", 0, 1, "(0, 1]"), ("final_learning_rate", 0, 1, "(0, 1]"),
+            ("episode_seconds", 0, 3600, "(0, 3600]"), ("gamma", 0, 1, "(0, 1]"), ("gae_lambda", 0, 1, "(0, 1]"),
+            ("clip_range", 0, 1, "(0, 1]"), ("ent_coef", -1e-12, 10, "[0, 10]"), ("target_kl", 0, 10, "(0, 10]"),
+            ("log_std_init", -10, 3, "(-10, 3]"),
+        ):  # fmt: skip
+            value = getattr(self, name)
+            if name == "target_kl" and value is None:
+                continue
+            if not (isinstance(value, int | float) and low < value <= high):
+                hint = "; YAML reads 1e-4 as a text, write 1.0e-4" if isinstance(value, str) else ""
+                raise InputError(f"training config: {name} = {value!r} must be a number in {ends}{hint}")
+        if not self.hidden or not all(isinstance(width, int) and width >= 1 for width in self.hidden):
+            raise InputError(f"training config: hidden = {list(self.hidden)!r} must be whole numbers, 1 or more")
+        if self.batch_size > self.rollout_steps:
+            raise InputError(
+                f"training config: batch_size = {self.batch_size} is more than the {self.rollout_steps} steps of an "
+                "update (n_envs x rollout)"
+            )
+        if not isinstance(self.env, dict):
+            raise InputError(f"training config: env = {self.env!r} must be a mapping of environment arguments")
 
     @property
     def rollout_steps(self) -> int:
@@ -85,5 +100,6 @@ def load_config(name: str) -> TrainConfig:
         allowed = ", ".join(f.name for f in fields(TrainConfig))
         raise InputError(f"training config {name}: unknown field {sorted(unknown)[0]!r}; allowed: {allowed}")
     if "hidden" in data:
-        data["hidden"] = tuple(data["hidden"])
+        hidden = data["hidden"]
+        data["hidden"] = tuple(hidden) if isinstance(hidden, list) else (hidden,)
     return TrainConfig(**data)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
+from tensegym.picture import draw_in_window
 from tensegym.report import Report, table
+from tensegym.robot import TensegrityRobot
 
 from .controllers import Controller, policy_controller
 from .trials import EPISODE_SECONDS, run_episode, run_trials, summarise
@@ -99,10 +102,10 @@ def _text(summaries: dict[str, dict[str, Any]]) -> str:
               "cost of transport", "audit failures"]  # fmt: skip
     rows = []
     for name, s in summaries.items():
-        low, high = s["speed_lps_mean_ci95"]
+        interval = "[-]" if s["speed_lps_mean_ci95"] is None else "[{:.3f}, {:.3f}]".format(*s["speed_lps_mean_ci95"])
         cost = s["cost_of_transport_median"]
         rows.append([
-            name, f"{s['speed_lps_median']:.3f}", f"{s['speed_lps_mean']:.3f} [{low:.3f}, {high:.3f}]",
+            name, f"{s['speed_lps_median']:.3f}", f"{s['speed_lps_mean']:.3f} {interval}",
             f"{s['share_over_half_median']:.0%}", f"{s['slip_share_median']:.2f}",
             f"{s['slip_share_sum_median']:.2f}", f"{s['tips_median']:.0f}",
             "-" if cost is None else f"{cost:.0f}", f"{s['audit_failures']} of {s['episodes']}",
@@ -120,6 +123,33 @@ class Roll:
     """Folder for metrics.json, gait.png and roll.mp4."""
     episodes: int = 10
     """Episodes in the table."""
+    window: bool = False
+    """Instead: watch one episode in PyBullet's window, in real time; needs a display, writes nothing."""
 
     def run(self) -> Report:
+        if self.window:
+            return self._watch()
         return Evaluate(self.policy, self.out, self.episodes).run()
+
+    def _watch(self) -> Report:
+        controller = policy_controller(self.policy)
+        with RollingEnv(**{**controller.env, "render_mode": "human"}) as env:
+            clock = _Clock()
+            env.watch, env.watch_period = clock, 1 / 30
+            row = run_episode(env, controller.start(env)(FIRST_SEED), FIRST_SEED, EPISODE_SECONDS)
+        text = table(["policy", "L/s", "tips", "slip share"],
+                     [[self.policy, row["speed_lps"], row["tips"], row["slip_share"]]])  # fmt: skip
+        return Report(text, row)
+
+
+class _Clock:
+    """Draws the robot and waits until the wall clock has caught up with its time."""
+
+    def __init__(self) -> None:
+        self.lead: float | None = None
+
+    def __call__(self, robot: TensegrityRobot) -> None:
+        draw_in_window(robot)
+        if self.lead is None:
+            self.lead = time.perf_counter() - robot.time
+        time.sleep(max(0.0, robot.time + self.lead - time.perf_counter()))

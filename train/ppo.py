@@ -33,6 +33,7 @@ from tqdm import tqdm
 
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
+from tensegym.files import replace_file
 from tensegym.report import Report, table
 
 from .config import TrainConfig, load_config
@@ -43,11 +44,18 @@ CURVE_FIELDS = ("steps", "hours", "episodes", "speed_lps", "speed_lps_p10", "sli
 
 
 def make_env(config: TrainConfig) -> gym.Env:
-    """One environment as the config describes it, with its time limit."""
+    """One environment as the config describes it, with its time limit.
+
+    Raises InputError for an environment or an argument there is none of.
+    """
     import tensegym.envs
 
     period = config.env.get("control_period", tensegym.envs.CONTROL_PERIOD)
-    return gym.make(config.env_id, max_episode_steps=round(config.episode_seconds / period), **config.env)
+    try:
+        steps = max(1, round(config.episode_seconds / period))
+        return gym.make(config.env_id, max_episode_steps=steps, **config.env)
+    except (TypeError, ZeroDivisionError, gym.error.Error) as error:
+        raise InputError(f"training config: env_id = {config.env_id!r}, env = {config.env!r}: {error}") from error
 
 
 @dataclass(frozen=True)
@@ -67,26 +75,28 @@ class Train:
 
     def run(self) -> Report:
         out = self.out or Path("runs") / f"{Path(self.config).stem}-s{self.seed}"
-        state_file = out / "state.json"
         if self.resume:
-            if not state_file.is_file():
-                raise FileNotFoundError(f"nothing to resume in {out}: no {state_file.name}")
-            state = json.loads(state_file.read_text())
+            state = _resume(out)
             config, seed = load_config(str(out / "config.yaml")), state["seed"]
         else:
+            if out.exists() and not out.is_dir():
+                raise InputError(f"--out {out} is a file; give a folder")
             if out.exists() and any(out.iterdir()):
                 raise InputError(f"folder {out} is not empty; take another --out, or --resume to go on with it")
             config, seed = load_config(self.config), self.seed
-            data = config.as_dict() | ({"steps": self.steps} if self.steps else {})
+            data = config.as_dict() | ({} if self.steps is None else {"steps": self.steps})
             config = TrainConfig(**data)
             make_env(config).close()  # a bad env argument fails here, before anything is written
             state = {"seed": seed, "steps": 0, "seconds": 0.0}
             out.mkdir(parents=True, exist_ok=True)
             (out / "config.yaml").write_text(yaml.safe_dump(config.as_dict(), sort_keys=False))
             (out / "versions.json").write_text(json.dumps(_versions(), indent=1))
+            (out / "state.json").write_text(json.dumps(state))
+            with (out / "curve.csv").open("w", newline="") as file:
+                csv.writer(file).writerow(CURVE_FIELDS)
         model_steps = train(config, seed, out, state)
         rows = list(csv.DictReader((out / "curve.csv").open()))
-        best = max((float(r["speed_lps"]) for r in rows), default=float("nan"))
+        best = max((float(r["speed_lps"]) for r in rows), default=None)
         from .curve import draw_curve
 
         draw_curve({out.name: out / "curve.csv"}, out / "curve.png")
@@ -110,8 +120,9 @@ def train(config: TrainConfig, seed: int, out: Path, state: dict[str, Any]) -> i
     monitored = VecMonitor(workers)
     try:
         if state["steps"]:
-            env = VecNormalize.load(str(out / "vecnormalize.pkl"), monitored)
-            model = PPO.load(out / "model.zip", env=env, device="cpu")
+            last = _checkpoint_folder(out, state["steps"])
+            env = VecNormalize.load(str(last / "vecnormalize.pkl"), monitored)
+            model = PPO.load(last / "model.zip", env=env, device="cpu")
         else:
             set_random_seed(seed)
             env = VecNormalize(monitored, gamma=config.gamma, clip_obs=10.0)
@@ -162,13 +173,40 @@ def _checkpoint(model: PPO, env: VecNormalize, out: Path, state: dict[str, Any])
     model.save(fresh / "model.zip")
     env.save(str(fresh / "vecnormalize.pkl"))
     (fresh / "state.json").write_text(json.dumps(state))
-    keep = out / "checkpoints" / f"{state['steps']:09d}"
+    keep = _checkpoint_folder(out, state["steps"])
     keep.parent.mkdir(exist_ok=True)
     shutil.rmtree(keep, ignore_errors=True)
     os.replace(fresh, keep)
+    _publish(keep, out)
+
+
+def _checkpoint_folder(out: Path, steps: int) -> Path:
+    return out / "checkpoints" / f"{steps:09d}"
+
+
+def _publish(checkpoint: Path, out: Path) -> None:
+    """Copy a checkpoint to the run's folder, where `evaluate` looks; resuming never reads these copies."""
     for name in ("model.zip", "vecnormalize.pkl", "state.json"):
-        shutil.copy2(keep / name, out / f"{name}.tmp")
+        shutil.copy2(checkpoint / name, out / f"{name}.tmp")
         os.replace(out / f"{name}.tmp", out / name)
+
+
+def _resume(out: Path) -> dict[str, Any]:
+    """State of the newest whole checkpoint, or of the start where a kill came before the first one.
+
+    Rows that the killed chunk left in curve.csv are dropped, since it is run again.
+    """
+    whole = sorted(folder for folder in (out / "checkpoints").glob("*") if folder.is_dir())
+    if whole:
+        _publish(whole[-1], out)
+    if not (out / "state.json").is_file():
+        raise FileNotFoundError(f"nothing to resume in {out}: no state.json")
+    state = json.loads((out / "state.json").read_text())
+    with (out / "curve.csv").open(newline="") as file:
+        header, *rows = list(csv.reader(file))
+    with replace_file(out / "curve.csv") as file:
+        csv.writer(file).writerows([header, *(row for row in rows if int(row[0]) <= state["steps"])])
+    return state
 
 
 class _Watch(BaseCallback):
@@ -197,12 +235,8 @@ class _Watch(BaseCallback):
             np.mean([g["tips"] for g in self.gaits]), np.max([g["audit_excess"] for g in self.gaits]),
             float(self.model.policy.log_std.detach().exp().mean()),
         )  # fmt: skip
-        fresh = not self.path.exists()
         with self.path.open("a", newline="") as file:
-            writer = csv.writer(file)
-            if fresh:
-                writer.writerow(CURVE_FIELDS)
-            writer.writerow([f"{v:.6g}" if isinstance(v, float) else v for v in row])
+            csv.writer(file).writerow([f"{v:.6g}" if isinstance(v, float) else v for v in row])
         for name, value in zip(CURVE_FIELDS[3:], row[3:], strict=True):
             self.logger.record(f"gait/{name}", float(value))
         self.bar.set_postfix_str(f"{np.median(speeds):.3f} L/s, slip {row[5]:.2f}, {row[6]:.0f} tips")

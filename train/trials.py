@@ -7,12 +7,14 @@ import multiprocessing
 import os
 import sys
 from collections.abc import Sequence
+from queue import Empty
 from typing import Any
 
 import numpy as np
 from tqdm import tqdm
 
 from tensegym.envs.rolling import RollingEnv
+from tensegym.errors import SimulationError
 
 from .controllers import Controller
 
@@ -36,9 +38,12 @@ def run_trials(
             workers = [context.Process(target=_work, args=(queue, controller, arguments, p, seconds)) for p in parts]
             for worker in workers:
                 worker.start()
-            rows = list(_tick(bar, (_received(queue.get()) for _ in seeds)))
-            for worker in workers:
-                worker.join()
+            try:
+                rows = list(_tick(bar, (_received(queue, workers) for _ in seeds)))
+            finally:
+                for worker in workers:
+                    worker.terminate()
+                    worker.join()
     order = {seed: place for place, seed in enumerate(seeds)}
     return sorted(rows, key=lambda row: order[row["seed"]])
 
@@ -49,10 +54,19 @@ def _tick(bar: tqdm, rows: Any) -> Any:
         yield row
 
 
-def _received(row: Any) -> Any:
-    if isinstance(row, Exception):
-        raise row
-    return row
+def _received(queue: Any, workers: Sequence[Any]) -> Any:
+    """The next row; raises what a worker raised, and SimulationError when one died without a word."""
+    while True:
+        dead = [worker for worker in workers if worker.exitcode]
+        try:
+            row = queue.get(timeout=1.0)
+        except Empty:
+            if dead:
+                raise SimulationError(f"a trial process ended with status {dead[0].exitcode}") from None
+            continue
+        if isinstance(row, Exception):
+            raise row
+        return row
 
 
 def _work(queue: Any, *args: Any) -> None:
@@ -89,16 +103,22 @@ def run_episode(env: RollingEnv, act: Any, seed: int, seconds: float, watch: Any
 
 
 def summarise(rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Median, mean with its 95 % interval (normal), and the counts a gait is judged by."""
-    speed = np.array([row["speed_lps"] for row in rows])
+    """Median, mean with its 95 % interval (normal; None of one trial), and the counts a gait is judged by.
+
+    The way of a trial that diverged or broke the energy audit does not count: its speed is taken as 0.
+    """
+    sound = np.array([row["audit_passed"] and not row["terminated"] for row in rows])
+    speed = np.where(sound, [row["speed_lps"] for row in rows], 0.0)
     costs = [row["cost_of_transport"] for row in rows if row["cost_of_transport"] is not None]
-    half_width = 1.96 * speed.std(ddof=1) / math.sqrt(len(speed)) if len(speed) > 1 else float("nan")
+    half_width = 1.96 * speed.std(ddof=1) / math.sqrt(len(speed)) if len(speed) > 1 else None
     return {
         "episodes": len(rows),
         "speed_lps_median": float(np.median(speed)),
         "speed_lps_mean": float(speed.mean()),
-        "speed_lps_mean_ci95": [float(speed.mean() - half_width), float(speed.mean() + half_width)],
-        "speed_mps_median": float(np.median([row["speed"] for row in rows])),
+        "speed_lps_mean_ci95": None if half_width is None else [
+            float(speed.mean() - half_width), float(speed.mean() + half_width)
+        ],
+        "speed_mps_median": float(np.median(np.where(sound, [row["speed"] for row in rows], 0.0))),
         "share_over_half_median": float((speed > np.median(speed) / 2).mean()),
         "slip_share_median": float(np.median([row["slip_share"] for row in rows])),
         "slip_share_sum_median": float(np.median([row["slip_share_sum"] for row in rows])),

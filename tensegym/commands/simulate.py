@@ -45,7 +45,12 @@ class Simulate:
         design = as_design(self.design)
         if not self.out.parent.is_dir():
             raise FileNotFoundError(f"no folder {self.out.parent} to write {self.out.name} in")
+        if self.out.is_dir():
+            raise InputError(f"--out {self.out} is a folder; give a file")
         times, angles = read_commands(self.commands, len(design.structure.stiff_cables))
+        for name, value, high in (("dt", self.dt, 5e-3), ("sample", self.sample, 10.0)):
+            if not 1e-6 <= value <= high:
+                raise InputError(f"{name} = {value!r} is outside [1e-06, {high:g}] s")
         every = round(self.sample / self.dt)
         if every < 1 or not math.isclose(every * self.dt, self.sample, rel_tol=1e-6):
             raise InputError(f"sample = {self.sample:g} s must be a whole number of steps of dt = {self.dt:g} s")
@@ -88,14 +93,18 @@ def read_commands(path: Path, count: int) -> tuple[FloatArray, FloatArray]:
     """
     if not path.is_file():
         raise FileNotFoundError(f"no command file {path}")
-    with path.open(newline="") as file:
-        lines = [row for row in csv.reader(file) if row]
+    try:
+        with path.open(newline="") as file:
+            reader = csv.reader(file)
+            lines = [(reader.line_num, row) for row in reader if row]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{path} is not CSV: {error}") from error
     wanted = ["time_s", *(f"drive_{i + 1}_rad" for i in range(count))]
-    if not lines or [name.strip() for name in lines[0]] != wanted:
-        found = ", ".join(lines[0]) if lines else "nothing"
+    if not lines or [name.strip() for name in lines[0][1]] != wanted:
+        found = ", ".join(lines[0][1]) if lines else "nothing"
         raise InputError(f"{path}: the header must be {', '.join(wanted)}; found {found}")
     values = []
-    for number, row in enumerate(lines[1:], start=2):
+    for number, row in lines[1:]:
         if len(row) != len(wanted):
             raise InputError(f"{path}, line {number}: {len(row)} values where the header has {len(wanted)}")
         for name, cell in zip(wanted, row, strict=True):
@@ -111,14 +120,15 @@ def read_commands(path: Path, count: int) -> tuple[FloatArray, FloatArray]:
         raise InputError(f"{path}: {len(array)} rows of commands; give two or more")
     steps = np.diff(array[:, 0])
     if (steps <= 0).any():
-        line = int(np.argmax(steps <= 0)) + 3
+        line = lines[int(np.argmax(steps <= 0)) + 2][0]
         raise InputError(f"{path}, line {line}: time_s must grow from row to row")
     typical = float(np.median(steps))
     odd = np.abs(steps - typical) > 0.01 * typical
     if odd.any():
-        line = int(np.argmax(odd)) + 3
+        first = int(np.argmax(odd))
+        line = lines[first + 2][0]
         raise InputError(
-            f"{path}, line {line}: a step of {steps[line - 3]:g} s where the others are {typical:g} s; "
+            f"{path}, line {line}: a step of {steps[first]:g} s where the others are {typical:g} s; "
             "give commands at even times, without a gap"
         )
     return array[:, 0], array[:, 1:]

@@ -20,6 +20,7 @@ from tensegym.report import Report, table
 from tensegym.robot import TensegrityRobot
 
 FRAMES = 6
+PERIOD = 0.02  # s between two rows of the record
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class Step:
     """
 
     face: str = ""
-    """Face to start on, by its nodes, such as 3-5-12; default: the first one that a single drive tips."""
+    """Face to start on, by its nodes, such as 3-5-12; default: the first one that the drives tip."""
     drives: tuple[int, ...] = ()
     """Drives that pull, counted from 1; default: the first choice of one to three that tips."""
     depth: float = 0.3
@@ -49,6 +50,11 @@ class Step:
         if not 0 < self.depth <= design.stiff_cable.max_pull:
             limit = design.stiff_cable.max_pull
             raise InputError(f"depth = {self.depth!r} is outside (0, {limit:g}], the design's max_pull")
+        if not 1e-6 <= self.dt <= 5e-3 or abs(PERIOD / self.dt - round(PERIOD / self.dt)) > 1e-6:
+            raise InputError(f"dt = {self.dt!r} must be in [1e-06, 0.005] s and divide {PERIOD} s")
+        if self.out.exists() and not self.out.is_dir():
+            raise InputError(f"--out {self.out} is a file; give a folder")
+        import matplotlib  # noqa: F401  # missing, it fails here, before anything is written
         with TensegrityRobot(design, dt=self.dt) as robot:
             count = len(robot.drives)
             if not all(1 <= d <= count for d in self.drives) or len(set(self.drives)) < len(self.drives):
@@ -74,15 +80,15 @@ class Step:
         return Report(text, data, passed=tip.tipped)
 
     def _find(self, robot: TensegrityRobot, faces: Any) -> Tip:
-        if self.drives:
-            return tip_from(robot, faces[0], Pull(tuple(d - 1 for d in self.drives), self.depth))
+        choices = [tuple(d - 1 for d in self.drives)] if self.drives else list(subsets(len(robot.drives)))
         for face in faces:
-            for chosen in subsets(len(robot.drives)):
+            for chosen in choices:
                 tip = tip_from(robot, face, Pull(chosen, self.depth))
-                if tip.tipped:
+                if tip.tipped or (self.face and self.drives):
                     return tip
+        what = f"pull of drives {', '.join(map(str, self.drives))}" if self.drives else "choice of one to three drives"
         where = self.face or "any face"
-        raise SimulationError(f"no choice of one to three drives tips the robot from {where} at depth {self.depth:g}")
+        raise SimulationError(f"no {what} tips the robot from {where} at depth {self.depth:g}")
 
     def _table(self, robot: TensegrityRobot) -> Report:
         from tqdm import tqdm
@@ -112,7 +118,7 @@ class Step:
 @dataclass
 class _Record:
     times: list[float]
-    frames: list[np.ndarray]
+    frames: list[tuple[float, np.ndarray]]  # time [s], picture
     drives: list[np.ndarray]
     tensions: list[np.ndarray]
     ratio: float
@@ -123,8 +129,8 @@ def _record(robot: TensegrityRobot, tip: Tip, settle: float = 0.5) -> _Record:
     record = _Record([], [], [], [], robot.design.drive.gear_ratio)
     robot.reset(tip.from_face)
     robot.step(round(settle / robot.dt))
-    start, period = robot.time, 0.02
-    wanted = np.linspace(0, tip.pull.duration - period, FRAMES)
+    start = robot.time
+    wanted = np.linspace(0, tip.pull.duration - PERIOD, FRAMES)
     driven = slice(robot.cables.first_driven, robot.cables.first_driven + len(robot.drives))
 
     def watch(robot: TensegrityRobot) -> None:
@@ -133,9 +139,9 @@ def _record(robot: TensegrityRobot, tip: Tip, settle: float = 0.5) -> _Record:
         record.drives.append(robot.drives.copy())
         record.tensions.append(robot.tensions[driven].copy())
         if len(record.frames) < FRAMES and now >= wanted[len(record.frames)]:
-            record.frames.append(render(robot))
+            record.frames.append((now, render(robot)))
 
-    run_pull(robot, tip.pull, watch, period)
+    run_pull(robot, tip.pull, watch, PERIOD)
     return record
 
 
@@ -146,8 +152,7 @@ def _draw_storyboard(record: _Record, out: Path) -> None:
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(2, 3, figsize=(12, 6.4))
-    times = np.linspace(0, record.times[-1], FRAMES)
-    for axis, frame, time in zip(axes.flat, record.frames, times, strict=True):
+    for axis, (time, frame) in zip(axes.flat, record.frames, strict=True):
         axis.imshow(frame)
         axis.set_title(f"t = {time:.2f} s")
         axis.axis("off")
