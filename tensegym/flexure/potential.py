@@ -37,7 +37,8 @@ class Potential:
         rows = np.ascontiguousarray(self.coefficients, dtype=float)
         if rows.ndim != 2 or rows.shape[0] != len(kernel.NAMES) or not np.isfinite(rows).all():
             raise FlexureError(f"coefficients have shape {rows.shape}; give 8 finite rows: {', '.join(kernel.NAMES)}")
-        for name, value in (("length", self.length), ("moment_scale", self.moment_scale), ("angle_scale", self.angle_scale)):
+        for name in ("length", "moment_scale", "angle_scale"):
+            value = getattr(self, name)
             if not (np.isfinite(value) and value > 0):
                 raise FlexureError(f"{name} = {value:g}; give a finite value above 0")
         if rows[kernel.RHO, 0] != 0 or rows[kernel.SIGMA, 0] != 0:
@@ -68,16 +69,16 @@ class Potential:
         kernel.stiffness(self.coefficients, self.scales, x, y, theta, out)
         return out
 
-    def wrenches(self, poses: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """(n, 3) wrenches and (n,) energies of (n, 3) poses x, y, theta."""
-        return kernel.wrench_batch(self.coefficients, self.scales, _table(poses, 3, "poses"))
+    def wrenches(self, poses: ArrayLike) -> FloatArray:
+        """(n, 3) wrenches of (n, 3) poses x, y, theta."""
+        return kernel.wrench_batch(self.coefficients, self.scales, _table(poses, 3, "poses"))[0]
 
     def stiffnesses(self, poses: ArrayLike) -> FloatArray:
         """(n, 3, 3) Jacobians of the wrench at (n, 3) poses x, y, theta."""
         return kernel.stiffness_batch(self.coefficients, self.scales, _table(poses, 3, "poses"))
 
-    def poses(self, theta: ArrayLike, force: ArrayLike) -> tuple[States, FloatArray]:
-        """The states at theta (n,) under dead forces (n, 2) at the tip, explicit, and their energies (n,).
+    def poses(self, theta: ArrayLike, force: ArrayLike) -> States:
+        """The states at theta (n,) [rad] under dead forces (n, 2) [N] at the tip, explicit.
 
         Raises FlexureError for a row outside the box.
         """
@@ -85,7 +86,12 @@ class Potential:
         forces = np.ascontiguousarray(np.broadcast_to(np.asarray(force, dtype=float), (len(angle), 2)))
         out = kernel.pose_batch(self.coefficients, self.scales, angle, forces)
         self._refuse(angle, forces, out[:, 4])
-        return States(angle, out[:, :2], forces, out[:, 2]), out[:, 3]
+        return States(angle, out[:, :2], forces, out[:, 2])
+
+    def energies(self, states: States) -> FloatArray:
+        """(n,) V [J] at the poses of ``states``."""
+        poses = np.column_stack([states.tip, states.theta])
+        return kernel.wrench_batch(self.coefficients, self.scales, poses)[1]
 
     def _refuse(self, angle: FloatArray, force: FloatArray, guard: FloatArray) -> None:
         slack = 1 + 1e-9
@@ -93,8 +99,8 @@ class Potential:
             raise FlexureError(f"theta = {np.degrees(np.abs(angle).max()):.4g} deg is outside the fitted "
                                f"+-{np.degrees(self.box.max_angle):.4g} deg; fit a larger box")  # fmt: skip
         if (np.abs(force) > slack * self.box.max_force).any():
-            raise FlexureError(f"a force of {np.abs(force).max():.4g} N is outside the fitted +-{self.box.max_force:.4g} N; "
-                               "fit a larger box")  # fmt: skip
+            raise FlexureError(f"a force of {np.abs(force).max():.4g} N is outside the fitted "
+                               f"+-{self.box.max_force:.4g} N on each axis; fit a larger box")  # fmt: skip
         if not (guard > 0).all():
             raise FlexureError("K - 2 g n <= 0: the joint buckles under this load")
 
