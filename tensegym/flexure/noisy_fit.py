@@ -1,8 +1,8 @@
 """Fit a potential to noisy states: weighed by the noise, held where the data say nothing, and every coefficient judged.
 
-The noise of tip and moment is estimated from the residuals and decides their weights (maximum likelihood, repeated). Each
-coefficient also has a size it may be expected to have, a weak normal prior: what noisy data leave open, such as the
-axial softness of a stiff hinge, then stays near it instead of running off to where K - 2 g n vanishes.
+The noise of tip and moment is estimated from the residuals and decides their weights (maximum likelihood, repeated).
+Each coefficient also has a size it may be expected to have, a weak normal prior: what noisy data leave open, such as
+the axial softness of a stiff hinge, then stays near it instead of running off to where K - 2 g n vanishes.
 """
 
 from __future__ import annotations
@@ -47,12 +47,9 @@ def fit_noisy(states: States, length: float, *, box: Box | None = None, symmetry
     if len(states) < mask.sum():
         raise FlexureError(f"{len(states)} states with angle, tip and load for a potential of {mask.sum()} "
                            "coefficients; give as many states, or fit planar or torsion")  # fmt: skip
-    angle, force = float(np.abs(states.theta).max()), float(np.abs(states.force).max())
-    moment_scale = max(float(np.abs(states.moment).max()), force * length)
-    if not (angle > 0.0 and moment_scale > 0.0):
-        raise FlexureError("the states have no rotation or no load: nothing to fit; load the hinge")
-    box = box or Box(angle, force if force > 0.0 else moment_scale / length)
-    data = scaled(states.theta, states.tip, states.force, states.moment, np.array([length, moment_scale, box.max_angle]))
+    box, moment_scale = box or box_of(states, length), moment_scale_of(states, length)
+    scales = np.array([length, moment_scale, box.max_angle])
+    data = scaled(states.theta, states.tip, states.force, states.moment, scales)
     prior = noisy_start(data, mask)
     rows, tip_noise, moment_noise = prior.mean, *_noise(prior.mean, data, 0)
     for _ in range(4):
@@ -62,6 +59,22 @@ def fit_noisy(states: States, length: float, *, box: Box | None = None, symmetry
     names = [f"{NAMES[row]}[{power}]" for row, power in np.argwhere(mask)]
     coefficients = judge(names, rows[mask], prior.size[mask], slopes)
     return NoisyFit(potential, tip_noise * length, moment_noise * moment_scale, coefficients)
+
+
+def moment_scale_of(states: States, length: float) -> float:
+    """Largest moment, or moment of a force over L, that acts in ``states`` [N m]."""
+    return max(float(np.abs(states.moment).max()), float(np.abs(states.force).max()) * length)
+
+
+def box_of(states: States, length: float) -> Box:
+    """The box that ``states`` span; without forces, forces up to the largest moment over L.
+
+    Raises FlexureError if nothing turns or nothing loads.
+    """
+    angle, scale = float(np.abs(states.theta).max()), moment_scale_of(states, length)
+    if not (angle > 0.0 and scale > 0.0):
+        raise FlexureError("the states have no rotation or no load: nothing to fit; load the hinge")
+    return Box(angle, float(np.abs(states.force).max()) or scale / length)
 
 
 def _descend(first: FloatArray, prior: Prior, mask: np.ndarray, data: Data, tip_noise: float,

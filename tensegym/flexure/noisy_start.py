@@ -59,7 +59,7 @@ def noisy_start(data: Data, mask: np.ndarray) -> Prior:
 
 
 def _softness(target: FloatArray, blocks: list[FloatArray], count: int, unknown: float) -> FloatArray:
-    """The first ``count`` coefficients of a regression, each at least its standard error; ``unknown`` where nothing acts."""
+    """The first ``count`` coefficients of a regression, each at least its error; ``unknown`` where nothing acts."""
     matrix = np.concatenate(blocks, axis=1)
     size = np.linalg.norm(matrix, axis=0)
     acts = size > 1e-9 * max(float(size.max()), 1.0)
