@@ -29,8 +29,8 @@ def wrapped(angle):
 def strain(dx, dy, turn1, turn2, l0, cos0, sin0):
     """Chord length, its direction (c, s), end slopes and membrane strain of one element.
 
-    (dx, dy) runs from node 1 to node 2 [m], turns are the nodes' rotations from rest [rad], (cos0, sin0) the direction at
-    rest.
+    (dx, dy) runs from node 1 to node 2 [m], turns are the nodes' rotations from rest [rad], (cos0, sin0) the chord's
+    direction at rest.
     """
     chord = math.sqrt(dx * dx + dy * dy)
     swing = math.atan2(cos0 * dy - sin0 * dx, cos0 * dx + sin0 * dy)
@@ -52,8 +52,8 @@ def element(dx, dy, turn1, turn2, l0, cos0, sin0, ea, ei, axial, out):
 
     out[0:4] gradient; out[4:14] Hessian xx, xy, yy, x1, y1, x2, y2, 11, 12, 22; out[14:18] gradient of the strain eps;
     out[18] the axial force EA eps [N]; ``axial`` is the force used in the Hessian's geometric part. Carrying that as
-    an unknown of its own (Magisano, Leonetti, Garcea, Int. J. Numer. Meth. Engng 109, 2017) leaves the solution as it is
-    and takes away Newton's trouble with leaves that are far stiffer along than across.
+    an unknown of its own (Magisano, Leonetti, Garcea, Int. J. Numer. Meth. Engng 109, 2017) leaves the solution as it
+    is and takes away Newton's trouble with leaves that are far stiffer along than across.
     """
     chord, c, s, a1, a2, eps = strain(dx, dy, turn1, turn2, l0, cos0, sin0)
     force = ea * eps

@@ -41,7 +41,8 @@ def lower_bound(coefficients: FloatArray, depth: int = DEPTH) -> float:
     shifted = np.zeros(degree + 1)  # over t in [0, 1], u = 2 t - 1
     for i, value in enumerate(coefficients):
         shifted[: i + 1] += value * poly.polypow([-1.0, 2.0], i)
-    bernstein = np.array([sum(comb(i, j) / comb(degree, j) * shifted[j] for j in range(i + 1)) for i in range(degree + 1)])
+    row, column = np.indices((degree + 1, degree + 1))
+    bernstein = (comb(row, column) / comb(degree, column)) @ shifted  # comb is zero above the diagonal
     pieces = bernstein[None]
     for _ in range(depth):
         if pieces.min() >= min(pieces[:, 0].min(), pieces[:, -1].min()):

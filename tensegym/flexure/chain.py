@@ -19,9 +19,9 @@ L0, COS, SIN, EA, EI, AX, AY, BX, BY = range(9)
 def condense(nodes, axial, real, count, held, strains, back, ends, loads):
     """Eliminate the inner nodes of one leaf; returns the number of negative pivots.
 
-    nodes (n + 1, 3) x, y, turn; axial (n,) the geometric axial force; ``held``: node 0 is on the ground, skip its terms.
-    Out: strains (n, 5) gradient of eps and the axial force; back (n + 1, 21) what ``recover`` needs; ends (18,) the
-    condensed blocks S00, S0n, Snn as 3 x 3 row-major in three rows of 9; loads (4, 3) condensed residuals at both ends,
+    nodes (n + 1, 3) x, y, turn; axial (n,) the geometric axial force; ``held``: node 0 is on the ground, its terms are
+    skipped. Out: strains (n, 5) gradient of eps and the axial force; back (n + 2, 21) what ``recover`` needs, the last
+    row scratch; ends (3, 9) the condensed blocks S00, S0n, Snn, each 3 x 3 row-major; loads (4, 3) condensed residuals at both ends,
     then the raw ones.
     """
     l0, cos0, sin0, ea, ei = real[L0], real[COS], real[SIN], real[EA], real[EI]
@@ -85,7 +85,8 @@ def condense(nodes, axial, real, count, held, strains, back, ends, loads):
         ty = -(n01 * rx + n11 * ry + n12 * rm)
         tm = -(n02 * rx + n12 * ry + n22 * rm)
         row[0], row[1], row[2] = tx, ty, tm
-        row[3], row[4], row[5], row[6], row[7], row[8], row[9], row[10], row[11] = b00, b01, b02, b10, b11, b12, b20, b21, b22
+        row[3], row[4], row[5], row[6], row[7], row[8] = b00, b01, b02, b10, b11, b12
+        row[9], row[10], row[11] = b20, b21, b22
         if not held:
             # A = inv c^T (c couples node 0 to this node)
             a00, a01, a02 = (n00 * c00 + n01 * c01 + n02 * c02, n00 * c10 + n01 * c11 + n02 * c12,
@@ -94,8 +95,8 @@ def condense(nodes, axial, real, count, held, strains, back, ends, loads):
                              n01 * c20 + n11 * c21 + n12 * c22)  # fmt: skip
             a20, a21, a22 = (n02 * c00 + n12 * c01 + n22 * c02, n02 * c10 + n12 * c11 + n22 * c12,
                              n02 * c20 + n12 * c21 + n22 * c22)  # fmt: skip
-            row[12], row[13], row[14], row[15], row[16], row[17], row[18], row[19], row[20] = (
-                a00, a01, a02, a10, a11, a12, a20, a21, a22)  # fmt: skip
+            row[12], row[13], row[14], row[15], row[16], row[17] = a00, a01, a02, a10, a11, a12
+            row[18], row[19], row[20] = a20, a21, a22
             s00 -= c00 * a00 + c01 * a10 + c02 * a20
             s01 -= c00 * a01 + c01 * a11 + c02 * a21
             s02 -= c00 * a02 + c01 * a12 + c02 * a22

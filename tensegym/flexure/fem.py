@@ -60,7 +60,7 @@ class Solution:
 
 
 def mesh_of(hinge: Hinge, elements: int = ELEMENTS) -> Mesh:
-    """Flat arrays of a hinge; ``elements`` for a leaf as long as the hinge, others in proportion, at least 4 (or that)."""
+    """Flat arrays of a hinge; ``elements`` for a leaf as long as the hinge, others in proportion, 4 at least."""
     if not 1 <= elements <= 2000:
         raise FlexureError(f"elements = {elements} is outside [1, 2000]; 16 is exact to the elastica within 3e-7 L")
     order = [GROUND, *(b for b in hinge.bodies if b not in (GROUND, TIP)), TIP]
@@ -142,7 +142,8 @@ def _rows(value: ArrayLike, tail: tuple[int, ...], name: str, count: int | None 
     if array.shape[1:] != tail or array.ndim != 1 + len(tail):
         raise FlexureError(f"{name} has shape {array.shape}; give (n{''.join(f', {t}' for t in tail)})")
     if not np.isfinite(array).all():
-        raise FlexureError(f"{name} has a value that is not finite, in row {int(np.argwhere(~np.isfinite(array))[0, 0])}")
+        row = int(np.argwhere(~np.isfinite(array))[0, 0])
+        raise FlexureError(f"{name} has a value that is not finite, in row {row}")
     return array
 
 

@@ -9,12 +9,12 @@ import numpy as np
 from numba import njit
 
 from .beam import OPTIONS, energy
-from .chain import AX, AY, BX, BY, COS, EA, EI, L0, SIN, condense, recover
+from .chain import AX, AY, BX, BY, COS, EA, EI, L0, SIN, condense
 from .states import FloatArray
 
 
 class Mesh(NamedTuple):
-    """A hinge as flat arrays. Body 0 is the ground, the last one the tip; a body's pose is (x, y, turn) of its point."""
+    """A hinge as flat arrays. Body 0 is the ground, the last the tip; a body's pose is (x, y, turn) of its point."""
 
     ends: np.ndarray
     """(m, 4) of each leaf: start body, end body, number of elements, first node."""
@@ -98,7 +98,7 @@ def strain_energy(mesh, mem):
 
 @njit(**OPTIONS)
 def assemble(mesh, mem):
-    """Gradient of the energy into right[0] and its Hessian into matrix, over the moving bodies; returns negative pivots."""
+    """Energy's gradient into right[0], its Hessian into matrix, over the moving bodies; returns negative pivots."""
     negative = 0
     mem.matrix[:] = 0.0
     mem.right[:] = 0.0

@@ -38,7 +38,9 @@ class Material:
             raise FlexureError(f"modulus = {self.modulus!r}; one of beam, plate, factor")
         positive("factor", self.factor, "")
         if self.modulus != "factor" and self.factor != 1.0:
-            raise FlexureError(f"factor = {self.factor:g} has no effect with modulus = {self.modulus}; say modulus = factor")
+            raise FlexureError(
+                f"factor = {self.factor:g} has no effect with modulus = {self.modulus}; use modulus = factor"
+            )
 
     @property
     def effective_modulus(self) -> float:
@@ -69,7 +71,7 @@ class Leaf:
     def __post_init__(self) -> None:
         for what, point in (("start", self.start), ("end", self.end)):
             if len(point) != 2 or not all(map(math.isfinite, point)):
-                raise FlexureError(f"leaf {self.start_body}-{self.end_body}: {what} = {point} is no point; give x and y")
+                raise FlexureError(f"leaf {self.start_body}-{self.end_body}: {what} = {point} is no point (x, y)")
         if self.start_body == self.end_body:
             raise FlexureError(f"a leaf joins {self.start_body!r} to itself; its ends need two bodies")
         positive(f"leaf {self.start_body}-{self.end_body}: width", self.width, "m")
@@ -122,7 +124,7 @@ class Hinge:
                     held |= {leaf.start_body, leaf.end_body}
         loose = [body for body in self.bodies if body not in held]
         if loose:
-            raise FlexureError(f"body {loose[0]!r} is disconnected: no chain of leaves joins it to {GROUND!r}; add a leaf")
+            raise FlexureError(f"body {loose[0]!r} is disconnected: no chain of leaves joins it to {GROUND!r}; add one")
 
     def with_material(self, material: Material) -> Hinge:
         """The same shape of another material."""
@@ -130,5 +132,6 @@ class Hinge:
 
     def describe(self) -> str:
         """One line for the head of an output."""
-        return (f"{self.name}: L = {self.length * 1e3:g} mm, {len(self.leaves)} leaves, E = "
+        count = "1 leaf" if len(self.leaves) == 1 else f"{len(self.leaves)} leaves"
+        return (f"{self.name}: L = {self.length * 1e3:g} mm, {count}, E = "
                 f"{self.material.youngs_modulus / 1e9:g} GPa, {self.material.modulus_name}")  # fmt: skip

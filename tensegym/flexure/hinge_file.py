@@ -70,7 +70,7 @@ def hinge_from_dict(data: dict[str, Any]) -> Hinge:
         return preset(name, **dimensions).with_material(material)
     _known("the hinge", data, _HINGE)
     if not isinstance(data.get("leaf"), list) or not data["leaf"]:
-        raise FlexureError("the hinge has no leaf; add a [[leaf]] section, or start from preset = \"x-hinge\"")
+        raise FlexureError('the hinge has no leaf; add a [[leaf]] section, or start from preset = "x-hinge"')
     leaves = tuple(_leaf(item) for item in data["leaf"])
     named = [GROUND, *(b for leaf in leaves for b in (leaf.start_body, leaf.end_body)), TIP]
     bodies = data.get("bodies", list(dict.fromkeys(named)))
@@ -153,7 +153,8 @@ def _leaf(data: Any) -> Leaf:
             raise FlexureError(f"leaf {key} = {data[key]!r}; give [x, y] in mm")
         points.append((MM * _number(data[key][0], key), MM * _number(data[key][1], key)))
     return Leaf(_text(data["from"], "from"), points[0], _text(data["to"], "to"), points[1],
-                MM * _number(data["width_mm"], "width_mm"), MM * _number(data["thickness_mm"], "thickness_mm"))  # fmt: skip
+                MM * _number(data["width_mm"], "width_mm"),
+                MM * _number(data["thickness_mm"], "thickness_mm"))  # fmt: skip
 
 
 def _known(what: str, data: dict[str, Any], allowed: set[str]) -> None:

@@ -85,7 +85,7 @@ def placement_of(hinge: Hinge, reading: str = "dx", max_angle: float = TABLE_ANG
 
 
 def symmetry_of(hinge: Hinge) -> str:
-    """both, axis or none: which mirror images leave the hinge as it is (places within 1 nm; widths in one place add up)."""
+    """both, axis or none: which mirror images leave the hinge as it is (within 1 nm; widths in one place add up)."""
 
     def shapes(flip_x: bool, flip_y: bool) -> dict[tuple[int, ...], int]:
         out: dict[tuple[int, ...], int] = {}

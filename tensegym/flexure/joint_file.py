@@ -60,7 +60,7 @@ def load_joint(path: str | Path) -> Joint:
     except (json.JSONDecodeError, UnicodeDecodeError) as error:
         raise FlexureError(f"{path} is not JSON: {error}") from error
     if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise FlexureError(f"{path} is no joint file: its format is not {FORMAT!r}; write one with `tensegym flexure fit`")
+        raise FlexureError(f"{path} is no joint file (format {FORMAT!r}); write one with `tensegym flexure fit`")
     try:
         joint = joint_from_dict(data)
     except (KeyError, TypeError, AttributeError) as error:
@@ -81,10 +81,12 @@ def joint_from_dict(data: dict[str, Any]) -> Joint:
 
 def _model_to_dict(model: Model) -> dict[str, Any]:
     if isinstance(model, Potential):
-        rows = {name: {str(i): float(c) for i, c in enumerate(row) if c} for name, row in zip(NAMES, model.coefficients, strict=True)}
+        named = zip(NAMES, model.coefficients, strict=True)
+        rows = {name: {str(i): float(c) for i, c in enumerate(row) if c} for name, row in named}
         bounds = {f"{k}_lower_bound": v for k, v in asdict(certify(model)).items()}
         return {"moment_scale_Nm": model.moment_scale, "angle_scale_rad": model.angle_scale,
-                "degree": model.coefficients.shape[1] - 1, "coefficients_by_power": rows, "certificate": bounds}  # fmt: skip
+                "degree": model.coefficients.shape[1] - 1, "coefficients_by_power": rows,
+                "certificate": bounds}  # fmt: skip
     if isinstance(model, PlanarSpring):
         return {"a": model.a, "b": model.b, "kx_N_per_m": model.kx, "ky_N_per_m": model.ky, "kz_Nm_per_rad": model.kz}
     if isinstance(model, TorsionSpring):
@@ -109,7 +111,8 @@ def _model_from_dict(name: str, data: dict[str, Any], length: float, box: Box) -
         return TorsionSpring(length, data["lambda"], data["stiffness_Nm_per_rad"])
     if name == "paper":
         stiffness = np.column_stack([data["kx_N_per_m"], data["ky_N_per_m"], data["kz_Nm_per_rad"]])
-        return StiffnessDiagram(length, data["b"], np.array(data["theta_rad"]), stiffness, np.array(data["singular_theta_rad"]))
+        theta, singular = np.array(data["theta_rad"]), np.array(data["singular_theta_rad"])
+        return StiffnessDiagram(length, data["b"], theta, stiffness, singular)
     raise FlexureError(f"unknown model {name!r} in a joint file; one of potential, planar, paper, torsion")
 
 

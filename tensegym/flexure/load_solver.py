@@ -34,12 +34,12 @@ class Answer:
 def solve_fem(hinge: Hinge, loads: FloatArray, elements: int = fem.ELEMENTS) -> list[Answer]:
     """Answers to loads (n, 3) force x, y [N] and moment [N m] at the tip, each applied from rest in proportion."""
     solution = fem.apply_wrench(hinge, loads, elements=elements)
-    return [Answer(float(solution.theta[i]), *map(float, solution.tip[i]), float(solution.energy[i]), solution.reason(i))
-            for i in range(len(loads))]  # fmt: skip
+    columns = np.column_stack([solution.theta, solution.tip, solution.energy]).tolist()
+    return [Answer(t, x, y, energy, solution.reason(i)) for i, (t, x, y, energy) in enumerate(columns)]
 
 
 def solve_model(model: Model, box: Box, loads: FloatArray) -> list[Answer]:
-    """Answers of a fitted model, by a bracketed root of M(theta) at the load's force; loads outside the box get a reason."""
+    """Answers of a fitted model: a root of M(theta) at the load's force, bracketed. A load outside gets a reason."""
     return [_solve_one(model, box, load) for load in loads]
 
 
@@ -56,7 +56,8 @@ def _solve_one(model: Model, box: Box, load: FloatArray) -> Answer:
     rising = np.flatnonzero((gap[:-1] <= 0) & (gap[1:] > 0))  # a falling moment is an unstable state
     if not len(rising):
         low, high = np.nanmin(gap) + asked, np.nanmax(gap) + asked
-        return Answer(*nothing, f"no stable state within +-{np.degrees(box.max_angle):.4g} deg: at this force the moment spans "
+        angle = np.degrees(box.max_angle)
+        return Answer(*nothing, f"no stable state within +-{angle:.4g} deg: at this force the moment spans "
                       f"{1e3 * low:.4g} to {1e3 * high:.4g} Nmm")  # fmt: skip
     i = rising[np.argmin(np.abs(angles[rising]))]
 

@@ -1,7 +1,7 @@
 """Which joint model is enough: the criterion of the paper's discussion as a function.
 
-The paper reads it off the drift of the axis: little drift along Ox and Oy, take the torsion spring; drift, take the planar
-one. Here the drift is the distance of the tip from where the simpler model puts it, and the models are tried in order.
+The paper reads it off the drift of the axis: little drift along Ox and Oy, take the torsion spring; drift, take the
+planar one. Here the drift is the distance of the tip from where the simpler model puts it; models are tried in order.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from .beam import OPTIONS
-from .chain import recover
+from .chain import AX, AY, BX, BY, recover
 from .frame import assemble, backward, copy_state, factor, forward, memory, place_ends, strain_energy
 
 CONVERGED, BUCKLED, FAILED = 0, 1, 2
@@ -66,7 +66,7 @@ def newton(mesh, mem, mode, ask):
         for m in range(len(mesh.ends)):
             a, b, count, first = mesh.ends[m]
             real = mesh.real[m]
-            for end, body, row, x, y in ((0, a, first, real[5], real[6]), (1, b, first + count, real[7], real[8])):
+            for end, body, x, y in ((0, a, real[AX], real[AY]), (1, b, real[BX], real[BY])):
                 if body > 0:
                     c, s = math.cos(mem.poses[body, 2]), math.sin(mem.poses[body, 2])
                     k = 3 * (body - 1)

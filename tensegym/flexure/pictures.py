@@ -40,15 +40,18 @@ def _panels(count: int, width: float = 5.0, height: float = 3.8) -> tuple[Any, A
     plt = _pyplot()
     columns = min(count, 2)
     rows = -(-count // columns)
-    figure, axes = plt.subplots(rows, columns, figsize=(width * columns, height * rows), squeeze=False, layout="constrained")
+    figure, axes = plt.subplots(
+        rows, columns, figsize=(width * columns, height * rows), squeeze=False, layout="constrained"
+    )
     for spare in axes.flat[count:]:
         spare.axis("off")
     return plt, figure, list(axes.flat[:count])
 
 
 def draw_hinge(axis: Any, hinge: Hinge, nodes: FloatArray, colour: str, alpha: float = 1.0) -> None:
-    """One shape of the hinge from its nodes (k, 3), [mm] on the axes: leaves, and bodies as the lines that join them."""
-    first, points = 0, {body: [] for body in hinge.bodies}
+    """One shape of the hinge from its nodes (k, 3), [mm] on the axes: leaves, bodies as the lines that join them."""
+    first = 0
+    points: dict[str, list[FloatArray]] = {body: [] for body in hinge.bodies}
     for leaf, (_, _, count, _) in zip(hinge.leaves, fem.mesh_of(hinge).ends, strict=True):
         line = 1e3 * nodes[first : first + count + 1, :2]
         first += count + 1
@@ -57,9 +60,9 @@ def draw_hinge(axis: Any, hinge: Hinge, nodes: FloatArray, colour: str, alpha: f
         points[leaf.end_body].append(line[-1])
     for body, ends in points.items():
         places = np.array(ends)
-        kind = {"color": "black" if body == GROUND else colour, "lw": 5, "alpha": 0.45 * alpha, "solid_capstyle": "round"}
-        axis.plot(places[:, 0], places[:, 1], **kind)
-        axis.plot(places[:, 0], places[:, 1], "s", ms=3.5, color="black" if body == GROUND else colour, alpha=alpha)
+        shade = "black" if body == GROUND else colour
+        axis.plot(places[:, 0], places[:, 1], color=shade, lw=5, alpha=0.45 * alpha, solid_capstyle="round")
+        axis.plot(places[:, 0], places[:, 1], "s", ms=3.5, color=shade, alpha=alpha)
 
 
 def hinges_picture(hinges: Sequence[Hinge], path: Path, share: float = 0.8) -> None:
@@ -129,7 +132,8 @@ def drift_picture(joints: dict[str, Joint], path: Path) -> None:
             place = planar_placement(sweep, joint.length, reading)
             x, y = 1e3 * spring_track(sweep, joint.length, place.b).T
             for values, style, part in ((x, "-", "x"), (y, "--", "y")):
-                axis.plot(np.degrees(sweep.theta), values, style, color=colour, label=f"{part}, {label}: b = {place.b:.3f}")
+                name_ = f"{part}, {label}: b = {place.b:.3f}"
+                axis.plot(np.degrees(sweep.theta), values, style, color=colour, label=name_)
         axis.set(title=name, xlabel=r"angle $\theta$ [deg]", ylabel="drift of the axis [mm]")
         axis.grid(alpha=0.3)
         axis.legend(fontsize=7)
@@ -176,7 +180,8 @@ def errors_picture(joints: dict[str, Joint], tests: dict[str, States], path: Pat
             error = error[np.isfinite(error) & (error > 0)]
             bins = np.logspace(-6, 2, 65)
             axis.hist(error, bins=bins, color=COLOURS[key], alpha=0.5, label=LABELS[key])
-        axis.set(title=f"{name}: {len(tests[name])} states held out", xscale="log", xlabel="tip error [mm]", ylabel="states")
+        axis.set(title=f"{name}: {len(tests[name])} states held out", xlabel="tip error [mm]", ylabel="states")
+        axis.set_xscale("log")
         axis.grid(alpha=0.3)
     axes[0].legend(fontsize=8)
     figure.savefig(path, dpi=110)

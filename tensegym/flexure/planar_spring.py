@@ -60,7 +60,7 @@ def spring_poses(theta: FloatArray, force: FloatArray, length: float, b: float, 
 
 @dataclass(frozen=True)
 class PlanarSpring:
-    """A planar spring of constant stiffness at a = 1 - b; a gradient, so passive, but too simple for a drifting hinge."""
+    """A planar spring of constant stiffness at a = 1 - b; a gradient, so passive, but too simple for drift."""
 
     length: float
     """L [m]."""
@@ -111,6 +111,9 @@ def fit_planar(states: States, length: float) -> PlanarSpring:
         return np.concatenate([((predicted.tip - states.tip) / (length * TIP_UNIT)).ravel(),
                                (predicted.moment - states.moment) / (moment_scale * MOMENT_UNIT)])  # fmt: skip
 
-    ends = [least_squares(residual, first * [b, 1, 1, 1], bounds=([-1, -60, -60, -60], [2, 60, 60, 60])) for b in (0.6, 1.0, 1.4)]
+    ends = [
+        least_squares(residual, first * [b, 1, 1, 1], bounds=([-1, -60, -60, -60], [2, 60, 60, 60]))
+        for b in (0.6, 1.0, 1.4)
+    ]
     best = min(ends, key=lambda end: end.cost)
     return PlanarSpring(length, float(best.x[0]), *(float(k) for k in np.exp(best.x[1:])))

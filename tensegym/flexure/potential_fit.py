@@ -65,7 +65,8 @@ def fit_potential(states: States, length: float, *, box: Box | None = None, symm
 
     box: where it is to be valid; default: the states' own. symmetry: both (about the axis and end to end), axis, none.
     start: coefficients to start from besides the linear start, the better end counts; start_noise: relative noise
-    drawn on the start with ``seed``, to show that the end does not hang on it. Raises FlexureError on too few states or a box of no extent.
+    drawn on the start with ``seed``, to show that the end does not hang on it. Raises FlexureError on too few states or
+    a box of no extent.
     """
     states = states.whole()
     mask = mask_of(symmetry)
@@ -133,8 +134,9 @@ def linear_start(data: Data, mask: np.ndarray) -> FloatArray:
     squared = _doubled(mask[SK])
     tau = mask[SIGMA]
     crossed = mask[H] | (mask[SIGMA] & mask[H].any())
-    k, t, g, hh = _linear(data.q, [data.ey[:, None] * f[:, squared], -f[:, tau], -2 * (data.n * data.ey)[:, None] * f[:, mask[G]],
-                                   -data.n[:, None] * f[:, crossed]])  # fmt: skip
+    n_, ey_ = data.n[:, None], data.ey[:, None]
+    blocks = [ey_ * f[:, squared], -f[:, tau], -2 * n_ * ey_ * f[:, mask[G]], -n_ * f[:, crossed]]
+    k, t, g, hh = _linear(data.q, blocks)
     k_u, g_u = np.maximum(f[:, squared] @ k, 1e-9), f[:, mask[G]] @ g
     sigma_u = f[:, tau] @ t / k_u
     h_u = f[:, crossed] @ hh + 2 * g_u * sigma_u
@@ -181,7 +183,7 @@ def _doubled(row: np.ndarray, extra: int = 0) -> np.ndarray:
 
 
 def _linear(target: FloatArray, blocks: list[FloatArray]) -> list[FloatArray]:
-    """Least squares over column blocks; the coefficients block by block. Columns are scaled, tiny directions dropped."""
+    """Least squares over column blocks; the coefficients block by block. Columns are scaled, blind directions left 0."""
     matrix = np.concatenate(blocks, axis=1)
     size = np.linalg.norm(matrix, axis=0)
     size[size == 0] = 1.0

@@ -5,8 +5,8 @@ e = R(-theta/2) p, X = e_x - 1 - rho(u), Y = e_y - sigma(u):
 
     V = 1/2 u^2 su^2 + (X - h Y - g Y^2)^2 / (2 C) + 1/2 K Y^2,   K = sk^2,  C = sa^2 + u^2 sb^2
 
-su, sk, sa, sb, rho, sigma, h, g are polynomials in u: rows of ``coefficients`` (8, degree + 1), lowest power first; rho and
-sigma have no constant. A hinge that is symmetric both ways has even su, sk, sa, sb, rho, g and no sigma, h.
+su, sk, sa, sb, rho, sigma, h, g are polynomials in u: rows of ``coefficients`` (8, degree + 1), lowest power first;
+rho and sigma have no constant. A hinge that is symmetric both ways has even su, sk, sa, sb, rho, g and no sigma, h.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def horner(row, u):
 
 @njit(**OPTIONS)
 def wrench(coefficients, scales, x, y, theta):
-    """Force x, y [N] in base axes and moment about the tip [N m] that hold the tip at (x, y) [m], theta [rad]; energy."""
+    """Force x, y [N] in base axes and moment about the tip [N m] that hold it at (x, y) [m], theta [rad]; energy [J]."""
     length, moment0, theta0 = scales[0], scales[1], scales[2]
     u = theta / theta0
     su, su1, _ = horner(coefficients[SU], u)

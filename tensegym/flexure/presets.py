@@ -7,6 +7,7 @@ nu = 0.38). Where the paper gives no dimension, the one taken here is said in th
 from __future__ import annotations
 
 import difflib
+import inspect
 import math
 from collections.abc import Callable
 
@@ -34,11 +35,18 @@ def leaf_spring(*, length: float = 40 * MM, width: float = 40 * MM, thickness: f
 
 def trls2(*, length: float = 40 * MM, width: float = 40 * MM, thickness: float = 0.8 * MM, rib: float = 0.8 * MM,
           material: Material | None = None, arm: float = 120 * MM) -> Hinge:  # fmt: skip
-    """TRLS(2x): a leaf with two rigid transverse ribs at L/3 and 2L/3 (assumed). ``rib`` along the leaf; lengths [m]."""
+    """TRLS(2x): a leaf with two rigid transverse ribs at L/3 and 2L/3 (assumed), ``rib`` long. Lengths [m]."""
     positive("rib", rib, "m")
     if not rib < length / 3:
         raise FlexureError(f"rib = {rib:g} m is outside (0, length / 3) at length = {length:g} m")
-    stops = [0.0, length / 3 - rib / 2, length / 3 + rib / 2, 2 * length / 3 - rib / 2, 2 * length / 3 + rib / 2, length]
+    stops = [
+        0.0,
+        length / 3 - rib / 2,
+        length / 3 + rib / 2,
+        2 * length / 3 - rib / 2,
+        2 * length / 3 + rib / 2,
+        length,
+    ]
     bodies = (GROUND, "rib1", "rib2", TIP)
     leaves = [Leaf(bodies[i], (stops[2 * i], 0.0), bodies[i + 1], (stops[2 * i + 1], 0.0), width, thickness)
               for i in range(3)]  # fmt: skip
@@ -53,8 +61,8 @@ def tfch(*, length: float = 40 * MM, height: float = 40 * MM, width: float = 40 
     return Hinge("tfch", tuple(leaves), length, material=material or Material(), arm=arm)
 
 
-def cross_spring(*, length: float = 40 * MM, height: float = 40 * MM, width: float = 40 * MM, thickness: float = 0.8 * MM,
-                 crossing: float = 0.5, material: Material | None = None, arm: float = 120 * MM) -> Hinge:  # fmt: skip
+def cross_spring(*, length: float = 40 * MM, height: float = 40 * MM, width: float = 40 * MM,
+                 thickness: float = 0.8 * MM, crossing: float = 0.5, material: Material | None = None, arm: float = 120 * MM) -> Hinge:  # fmt: skip
     """Generalised cross-spring pivot: two leaves that cross, unconnected, at the fraction ``crossing`` of their length.
 
     ``height`` is that of each leaf: they run from (0, -+crossing height) to (L, +-(1 - crossing) height). Lengths [m].
@@ -67,15 +75,22 @@ def cross_spring(*, length: float = 40 * MM, height: float = 40 * MM, width: flo
 
 
 def parallel_guide(*, length: float = 40 * MM, height: float = 40 * MM, width: float = 40 * MM,
-                   thickness: float = 0.8 * MM, material: Material | None = None, arm: float = 0.0) -> Hinge:  # fmt: skip
+                   thickness: float = 0.8 * MM, material: Material | None = None,
+                   arm: float = 0.0) -> Hinge:  # fmt: skip
     """Parallel guide without notches: two leaves side by side; it translates and hardly turns. All lengths [m]."""
     leaves = [Leaf(GROUND, (0.0, s * height / 2), TIP, (length, s * height / 2), width, thickness) for s in (-1, 1)]
     return Hinge("parallel-guide", tuple(leaves), length, material=material or Material(), arm=arm,
                  max_angle=math.radians(0.01))  # fmt: skip
 
 
-PRESETS: dict[str, Callable[..., Hinge]] = {"x-hinge": x_hinge, "leaf-spring": leaf_spring, "trls2": trls2, "tfch": tfch,
-                                            "cross-spring": cross_spring, "parallel-guide": parallel_guide}  # fmt: skip
+PRESETS: dict[str, Callable[..., Hinge]] = {
+    "x-hinge": x_hinge,
+    "leaf-spring": leaf_spring,
+    "trls2": trls2,
+    "tfch": tfch,
+    "cross-spring": cross_spring,
+    "parallel-guide": parallel_guide,
+}
 PAPER_HINGES = ("x-hinge", "leaf-spring", "trls2", "tfch")
 
 
@@ -85,8 +100,10 @@ def preset(name: str, **dimensions: float) -> Hinge:
         near = difflib.get_close_matches(name, PRESETS, 1)
         hint = f"; did you mean {near[0]}?" if near else ""
         raise FlexureError(f"unknown hinge {name!r}; one of {', '.join(PRESETS)}, or a path that ends in .toml{hint}")
-    known = set(PRESETS[name].__kwdefaults__)
+    known = set(inspect.signature(PRESETS[name]).parameters)
     for key in dimensions:
         if key not in known:
-            raise FlexureError(f"hinge {name} has no {key!r}; its dimensions are {', '.join(sorted(known - {'material'}))}")
+            raise FlexureError(
+                f"hinge {name} has no {key!r}; its dimensions are {', '.join(sorted(known - {'material'}))}"
+            )
     return PRESETS[name](**dimensions)

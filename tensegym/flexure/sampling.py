@@ -52,7 +52,9 @@ def fit_states(hinge: Hinge, box: Box, count: int = 600, seed: int = 0, elements
     return states_at(hinge, box, -np.cos(np.pi * draws), elements)
 
 
-def held_out_states(hinge: Hinge, box: Box, count: int = 300, seed: int = 12345, elements: int = fem.ELEMENTS) -> States:
+def held_out_states(
+    hinge: Hinge, box: Box, count: int = 300, seed: int = 12345, elements: int = fem.ELEMENTS
+) -> States:
     """Uniformly random wrenches of the box; keep the seed out of any fit."""
     return states_at(hinge, box, np.random.default_rng([seed, 1]).uniform(-1, 1, (count, 3)), elements)
 
@@ -68,7 +70,7 @@ def states_at(hinge: Hinge, box: Box, unit: FloatArray, elements: int = fem.ELEM
     if len(bad):
         i = int(bad[0])
         raise FlexureError(
-            f"{hinge.name}: at theta = {np.degrees(box.max_angle * unit[i, 0]):.3g} deg with the force ({force[i, 0]:.4g}, "
-            f"{force[i, 1]:.4g}) N the hinge {solution.reason(i)}; lower max_force = {box.max_force:.4g} N or max_angle"
+            f"{hinge.name}: at theta = {np.degrees(box.max_angle * unit[i, 0]):.3g} deg with the force "
+            f"({force[i, 0]:.4g}, {force[i, 1]:.4g}) N the hinge {solution.reason(i)}; lower max_force = {box.max_force:.4g} N or max_angle"
         )
     return solution.states()

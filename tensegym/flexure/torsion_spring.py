@@ -30,7 +30,7 @@ class TorsionSpring:
         """States at theta (n,) [rad] under the dead force (n, 2) [N] at the tip; the pin does not give."""
         arm = self.fraction * self.length
         link = arm * np.column_stack([np.cos(theta), np.sin(theta)])
-        tip = link + [self.length - arm, 0.0]
+        tip = link + np.array([self.length - arm, 0.0])
         moment = self.stiffness * theta - (link[:, 0] * force[:, 1] - link[:, 1] * force[:, 0])
         return States(theta, tip, np.broadcast_to(force, (len(theta), 2)), moment)
 

@@ -23,7 +23,7 @@ from .hinge_options import BoxOptions, HingeOptions
 
 @dataclass(frozen=True)
 class Curves:
-    """Torque against angle of all hinges by FEM, every model and measured points; axis drift; stiffness diagrams."""
+    """Draw torque against angle by FEM, every model and measured points, the axis drift, and the stiffness diagrams."""
 
     out: Path
     """Folder for hinges.png, torque.png, drift.png, stiffness.png, errors.png and curves.csv; made if missing."""
@@ -38,8 +38,8 @@ class Curves:
         measured = self._measured()
         if not self.out.parent.is_dir():
             raise FileNotFoundError(f"no folder {self.out.parent} to make {self.out.name} in")
-        joints = {name: fit_joint(self.options.apply(name), max_angle=self.box.max_angle, max_force=self.box.max_force_N)
-                  for name in self.hinges}  # fmt: skip
+        box = {"max_angle": self.box.max_angle, "max_force": self.box.max_force_N}
+        joints = {name: fit_joint(self.options.apply(name), **box) for name in self.hinges}
         tests = {name: held_out_states(joint.hinge, joint.box) for name, joint in joints.items() if joint.hinge}
         self.out.mkdir(exist_ok=True)
         pictures.hinges_picture([joint.hinge for joint in joints.values() if joint.hinge], self.out / "hinges.png")
@@ -74,7 +74,8 @@ def write_curves(joints: dict[str, Joint], path: Path) -> int:
         assert joint.hinge is not None
         sweep = arm_sweep(joint.hinge, joint.box.max_angle)
         sweep = sweep.pick(np.abs(sweep.force).max(axis=1) <= joint.box.max_force)
-        for key, states in {"fem": sweep, **{k: m.poses(sweep.theta, sweep.force) for k, m in joint.models.items()}}.items():
+        answers = {key: model.poses(sweep.theta, sweep.force) for key, model in joint.models.items()}
+        for key, states in {"fem": sweep, **answers}.items():
             for i in range(len(states)):
                 values = [np.degrees(states.theta[i]), *(1e3 * states.tip[i]), *states.force[i], 1e3 * states.moment[i]]
                 rows.append([name, key, *(f"{v:.10g}" if np.isfinite(v) else "" for v in values)])

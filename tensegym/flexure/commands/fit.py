@@ -1,29 +1,41 @@
-"""`tensegym flexure fit`: a joint from a hinge's FEM."""
+"""`tensegym flexure fit`: a joint from a hinge's FEM, or from a measured experiment."""
 
 from __future__ import annotations
 
 import time
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import tyro
 
+from ...errors import InputError
 from ...report import Report, table
-from ..joint import Joint, fit_joint
+from ..joint import Joint, fit_joint, symmetry_of
 from ..joint_file import joint_to_dict, save_joint
+from ..measured import ARM_LENGTH, PAPER_LENGTH
+from ..measured_report import fit_data
 from ..pictures import LABELS
+from ..presets import MM
 from .hinge_options import BoxOptions, HingeOptions
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Fit every joint model to a hinge's FEM states, certify the potential, and write them as one small JSON file."""
+    """Fit every joint model to a hinge's FEM states, certify the potential, and write them as one small JSON file.
 
-    hinge: tyro.conf.Positional[str]
-    """A preset (x-hinge, leaf-spring, trls2, tfch, cross-spring, parallel-guide) or a TOML file."""
+    With --data one model is fitted to an experiment instead; HINGE then gives L, the arm and the symmetry, no stiffness.
+    """
+
     out: Path
     """JSON file to write."""
+    hinge: tyro.conf.Positional[str] = ""
+    """A preset (x-hinge, leaf-spring, trls2, tfch, cross-spring, parallel-guide) or a TOML file."""
+    data: Path | None = None
+    """CSV of an experiment: angle_deg, x_mm, y_mm and force_N (at the arm's end, across the undeformed arm), or Fx_N and
+    Fy_N there, or torque_Nmm. Without HINGE, --length-mm (40) and --arm-mm (120) tell the lengths."""
+    model: Literal["potential", "planar", "torsion"] = "potential"
+    """What to fit to --data."""
     options: HingeOptions = field(default_factory=HingeOptions)
     box: BoxOptions = field(default_factory=BoxOptions)
     states: int = 600
@@ -38,6 +50,10 @@ class Fit:
     def run(self) -> Report:
         if not self.out.parent.is_dir():
             raise FileNotFoundError(f"no folder {self.out.parent} to write {self.out.name} in")
+        if self.data is not None:
+            return self._fit_data(self.data)
+        if not self.hinge:
+            raise InputError("give a HINGE to fit to its FEM, or --data FILE.csv to fit to an experiment")
         hinge = self.options.apply(self.hinge)
         began = time.perf_counter()
         joint = fit_joint(hinge, max_angle=self.box.max_angle, max_force=self.box.max_force_N, count=self.states,
@@ -45,8 +61,21 @@ class Fit:
         seconds = time.perf_counter() - began
         save_joint(joint, self.out)
         text = f"{describe(joint)}\nfitted in {seconds:.2f} s; written to {self.out}"
-        data = {"out": str(self.out), "seconds": seconds, "certificate": asdict(joint.certificate()), **joint_to_dict(joint)}
+        data = {
+            "out": str(self.out),
+            "seconds": seconds,
+            "certificate": asdict(joint.certificate()),
+            **joint_to_dict(joint),
+        }
         return Report(text, data)
+
+    def _fit_data(self, path: Path) -> Report:
+        if self.hinge:
+            hinge = self.options.apply(self.hinge)
+            return fit_data(path, self.out, hinge.length, self.model, arm_length=hinge.arm, symmetry=symmetry_of(hinge))
+        length = PAPER_LENGTH if self.options.length_mm is None else MM * self.options.length_mm
+        arm = ARM_LENGTH if self.options.arm_mm is None else MM * self.options.arm_mm
+        return fit_data(path, self.out, length, self.model, arm_length=arm)
 
 
 def error_rows(joint: Joint) -> list[list[Any]]:

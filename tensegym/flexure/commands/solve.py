@@ -94,7 +94,7 @@ def read_loads(path: Path) -> FloatArray:
     header = [name.strip() for name in rows[0]] if rows else []
     for name in LOADS:
         if name not in header:
-            raise InputError(f"{path}: the header has no column {name}; it must name {', '.join(LOADS)}, units included")
+            raise InputError(f"{path}: no column {name}; the header must name {', '.join(LOADS)}, units included")
     columns = [header.index(name) for name in LOADS]
     values = np.empty((len(rows) - 1, 3))
     for i, row in enumerate(rows[1:]):

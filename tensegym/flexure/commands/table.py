@@ -30,7 +30,7 @@ PAPER_TABLE_2 = {"x-hinge": (0.96, 0.49), "leaf-spring": (1.25, 0.85), "trls2": 
 
 @dataclass(frozen=True)
 class Table:
-    """The paper's Tables 1 and 2 beside ours, held-out errors of every model, and the work they make on closed loops."""
+    """Print the paper's Tables 1 and 2 beside ours, held-out errors of every model, and work on closed loops."""
 
     hinges: tuple[str, ...] = PAPER_HINGES
     """Presets or TOML files."""
@@ -49,8 +49,8 @@ class Table:
 
     def run(self) -> Report:
         texts: list[str] = []
-        data: dict[str, Any] = {"held_out_seed": HELD_OUT_SEED, "seed": self.seed, "table_angle_deg": self.table_angle_deg,
-                                "hinges": {}}  # fmt: skip
+        data: dict[str, Any] = {"held_out_seed": HELD_OUT_SEED, "seed": self.seed, "hinges": {}}
+        data["table_angle_deg"] = self.table_angle_deg
         first, second, third, fourth = [], [], [], []
         for name in self.hinges:
             hinge = self.options.apply(name)
@@ -69,14 +69,15 @@ class Table:
             errors = {key: error.as_dict() for key, error in joint.errors.items()}
             data["hinges"][name] = {"source": joint.source, "table_1": facts, "errors": errors, "loop_work": work,
                                     "table_2_s": {"fem": times.fem, "potential": times.potential, "paper": paper},
-                                    "max_angle_rad": joint.box.max_angle, "max_force_N": joint.box.max_force}  # fmt: skip
+                                    "max_angle_rad": joint.box.max_angle,
+                                    "max_force_N": joint.box.max_force}  # fmt: skip
         texts += [
-            f"\nTable 1: placement of the springs; a force in base y across the arm's end, +-{self.table_angle_deg:g} deg",
+            f"\nTable 1: where the springs stand; force in base y at the arm's end, +-{self.table_angle_deg:g} deg",
             table(["hinge", "whose", "lambda", "a", "b", "dx mm", "dy mm"], first),
             dx_note(data["hinges"]),
             "\nTable 2: time of one model run in the paper [s], and of a 60-point sweep here, warm, one thread",
             table(["hinge", "SPACAR s", "paper's model s", "our FEM ms", "potential us", "ratio"], second),
-            f"\nHeld out: {self.held_out} random wrenches of the fitted box; torque in % of the pure moment at the box's angle",
+            f"\nHeld out: {self.held_out} random wrenches of the box; torque in % of the pure moment at its angle",
             table(["hinge", *ERROR_HEADER], third),
             f"\nWork around {self.loops} random closed loops, of the energy's swing along the loop",
             table(["hinge", "model", "largest", "median"], fourth),
@@ -107,12 +108,13 @@ def dx_note(hinges: dict[str, Any]) -> str:
     tables = [facts["table_1"] for facts in hinges.values() if "paper" in facts["table_1"]]
     if not tables:
         return "(no row of the paper's table among these hinges)"
-    off = max(abs(t["paper"][k] - (t["lambda"] if k == "lambda" else t["dx"][k])) for t in tables for k in ("lambda", "a", "b"))
+    ours = [{"lambda": t["lambda"], **t["dx"]} for t in tables]
+    off = max(abs(t["paper"][k] - o[k]) for t, o in zip(tables, ours, strict=True) for k in ("lambda", "a", "b"))
     ratio = [t["paper"]["dx_mm"] / t["dx"]["dx_mm"] for t in tables]
     drift = [t["dx"]["dy_mm"] / t["F2"]["dy_mm"] for t in tables]
-    return (f"lambda, a, b are the paper's within {off:.3f} when dx alone is minimised. F2 as printed has its minimum elsewhere, "
-            f"with a dy {min(drift):.0f} to {max(drift):.0f} times smaller.\nThe paper's dx is not reproduced: it is "
-            f"{min(ratio):.0f} to {max(ratio):.0f} times ours.")  # fmt: skip
+    return (f"lambda, a, b are the paper's within {off:.3f} when dx alone is minimised. F2 as printed has its "
+            f"minimum elsewhere, with a dy {min(drift):.0f} to {max(drift):.0f} times smaller.\n"
+            f"The paper's dx is not reproduced: it is {min(ratio):.0f} to {max(ratio):.0f} times ours.")  # fmt: skip
 
 
 def loops(joint: Joint, count: int) -> dict[str, dict[str, float]]:
