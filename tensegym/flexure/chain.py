@@ -21,8 +21,8 @@ def condense(nodes, axial, real, count, held, strains, back, ends, loads):
 
     nodes (n + 1, 3) x, y, turn; axial (n,) the geometric axial force; ``held``: node 0 is on the ground, its terms are
     skipped. Out: strains (n, 5) gradient of eps and the axial force; back (n + 2, 21) what ``recover`` needs, the last
-    row scratch; ends (3, 9) the condensed blocks S00, S0n, Snn, each 3 x 3 row-major; loads (4, 3) condensed residuals at both ends,
-    then the raw ones.
+    row scratch; ends (3, 9) the condensed blocks S00, S0n, Snn, each 3 x 3 row-major; loads (4, 3)
+    condensed residuals at both ends, then the raw ones.
     """
     l0, cos0, sin0, ea, ei = real[L0], real[COS], real[SIN], real[EA], real[EI]
     negative = 0

@@ -183,7 +183,7 @@ def _doubled(row: np.ndarray, extra: int = 0) -> np.ndarray:
 
 
 def _linear(target: FloatArray, blocks: list[FloatArray]) -> list[FloatArray]:
-    """Least squares over column blocks; the coefficients block by block. Columns are scaled, blind directions left 0."""
+    """Least squares over column blocks; coefficients block by block. Columns are scaled, blind directions stay 0."""
     matrix = np.concatenate(blocks, axis=1)
     size = np.linalg.norm(matrix, axis=0)
     size[size == 0] = 1.0

@@ -35,7 +35,7 @@ def horner(row, u):
 
 @njit(**OPTIONS)
 def wrench(coefficients, scales, x, y, theta):
-    """Force x, y [N] in base axes and moment about the tip [N m] that hold it at (x, y) [m], theta [rad]; energy [J]."""
+    """Force x, y [N] in base axes and moment [N m] about the tip that hold it at (x, y) [m], theta; energy [J]."""
     length, moment0, theta0 = scales[0], scales[1], scales[2]
     u = theta / theta0
     su, su1, _ = horner(coefficients[SU], u)

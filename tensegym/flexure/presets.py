@@ -62,7 +62,8 @@ def tfch(*, length: float = 40 * MM, height: float = 40 * MM, width: float = 40 
 
 
 def cross_spring(*, length: float = 40 * MM, height: float = 40 * MM, width: float = 40 * MM,
-                 thickness: float = 0.8 * MM, crossing: float = 0.5, material: Material | None = None, arm: float = 120 * MM) -> Hinge:  # fmt: skip
+                 thickness: float = 0.8 * MM, crossing: float = 0.5, material: Material | None = None,
+                 arm: float = 120 * MM) -> Hinge:  # fmt: skip
     """Generalised cross-spring pivot: two leaves that cross, unconnected, at the fraction ``crossing`` of their length.
 
     ``height`` is that of each leaf: they run from (0, -+crossing height) to (L, +-(1 - crossing) height). Lengths [m].

@@ -71,6 +71,7 @@ def states_at(hinge: Hinge, box: Box, unit: FloatArray, elements: int = fem.ELEM
         i = int(bad[0])
         raise FlexureError(
             f"{hinge.name}: at theta = {np.degrees(box.max_angle * unit[i, 0]):.3g} deg with the force "
-            f"({force[i, 0]:.4g}, {force[i, 1]:.4g}) N the hinge {solution.reason(i)}; lower max_force = {box.max_force:.4g} N or max_angle"
+            f"({force[i, 0]:.4g}, {force[i, 1]:.4g}) N the hinge {solution.reason(i)}; "
+            f"lower max_force = {box.max_force:.4g} N or max_angle"
         )
     return solution.states()

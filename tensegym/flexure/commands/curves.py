@@ -38,8 +38,9 @@ class Curves:
         measured = self._measured()
         if not self.out.parent.is_dir():
             raise FileNotFoundError(f"no folder {self.out.parent} to make {self.out.name} in")
-        box = {"max_angle": self.box.max_angle, "max_force": self.box.max_force_N}
-        joints = {name: fit_joint(self.options.apply(name), **box) for name in self.hinges}
+        angle, force = self.box.max_angle, self.box.max_force_N
+        hinges = {name: self.options.apply(name) for name in self.hinges}
+        joints = {name: fit_joint(h, max_angle=angle, max_force=force) for name, h in hinges.items()}
         tests = {name: held_out_states(joint.hinge, joint.box) for name, joint in joints.items() if joint.hinge}
         self.out.mkdir(exist_ok=True)
         pictures.hinges_picture([joint.hinge for joint in joints.values() if joint.hinge], self.out / "hinges.png")
