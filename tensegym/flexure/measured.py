@@ -25,8 +25,8 @@ import numpy as np
 from ..errors import InputError
 from .states import FloatArray, States
 
-ARM_LENGTH = 0.12
-"""The paper's arm beyond the tip [m]"""
+PAPER_LENGTH, ARM_LENGTH = 0.04, 0.12
+"""The paper's hinges from base to tip, and its arm beyond the tip [m]"""
 
 _LENGTH, _FORCE = {"mm": 1e-3, "m": 1.0}, {"N": 1.0, "mN": 1e-3}
 UNITS: dict[str, dict[str, float]] = {

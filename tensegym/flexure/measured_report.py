@@ -21,9 +21,8 @@ def fit_data(data: Path, out: Path, length: float, model: str = "potential", *, 
     length: rest length L of the hinge [m]; arm_length: the arm beyond the tip [m]. Raises InputError and FlexureError
     as ``fit_file``, before anything is written.
     """
-    for name, value in (("length", length), ("arm length", arm_length)):
-        if not 0.0 < value < np.inf:
-            raise InputError(f"{name} = {value:g} m; give a finite length above 0")
+    if not (0.0 < length < np.inf and 0.0 <= arm_length < np.inf):
+        raise InputError(f"length {length:g} m, arm {arm_length:g} m: give a length above 0 and an arm of 0 or more")
     fit = fit_file(data, length, model, arm_length=arm_length, symmetry=symmetry)
     save_joint(fit.joint, out)
     return Report(_text(fit, out), _facts(fit, out))

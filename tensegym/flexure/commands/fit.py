@@ -24,7 +24,7 @@ from .hinge_options import BoxOptions, HingeOptions
 class Fit:
     """Fit every joint model to a hinge's FEM states, certify the potential, and write them as one small JSON file.
 
-    With --data one model is fitted to an experiment instead; HINGE then gives L, the arm and the symmetry, no stiffness.
+    With --data one model is fitted to an experiment instead; HINGE then gives L, the arm and the symmetry only.
     """
 
     out: Path
@@ -32,8 +32,8 @@ class Fit:
     hinge: tyro.conf.Positional[str] = ""
     """A preset (x-hinge, leaf-spring, trls2, tfch, cross-spring, parallel-guide) or a TOML file."""
     data: Path | None = None
-    """CSV of an experiment: angle_deg, x_mm, y_mm and force_N (at the arm's end, across the undeformed arm), or Fx_N and
-    Fy_N there, or torque_Nmm. Without HINGE, --length-mm (40) and --arm-mm (120) tell the lengths."""
+    """CSV of an experiment: angle_deg, x_mm, y_mm and force_N (at the arm's end, across the undeformed arm), or
+    Fx_N and Fy_N there, or torque_Nmm. Without HINGE, --length-mm (40) and --arm-mm (120) tell the lengths."""
     model: Literal["potential", "planar", "torsion"] = "potential"
     """What to fit to --data."""
     options: HingeOptions = field(default_factory=HingeOptions)
