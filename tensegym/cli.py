@@ -71,7 +71,7 @@ def run(argv: list[str], commands: dict[str, tuple[str, str]] = COMMANDS, progra
     except BrokenPipeError:
         raise
     except (TensegymError, OSError, UnicodeDecodeError) as error:
-        print(f"{program} {name}: error: {error}", file=sys.stderr)
+        print(f"{program} {name}: error: {' '.join(str(error).split())}", file=sys.stderr)
         return 2
     print(json.dumps(report.data, allow_nan=False) if as_json else report.text)
     return 0 if report.passed else 1

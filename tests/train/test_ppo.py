@@ -1,0 +1,188 @@
+"""Training: what a run leaves behind, and that killing and resuming it changes nothing."""
+
+import csv
+import json
+import os
+import pickle
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import torch
+import yaml
+from stable_baselines3 import PPO
+
+from tests.conftest import assert_refused
+
+STEPS = 20  # a chunk of the tiny training
+
+
+def learned(run):
+    """Everything a training's next step depends on: weights, optimiser, running statistics, curve without clocks."""
+    model = PPO.load(run / "model.zip", device="cpu")
+    with (run / "vecnormalize.pkl").open("rb") as file:
+        normal = pickle.load(file)
+    with (run / "curve.csv").open() as file:
+        curve = [{k: v for k, v in row.items() if k != "hours"} for row in csv.DictReader(file)]
+    weights = {name: value.numpy() for name, value in model.policy.state_dict().items()}
+    moments = [
+        value.numpy()
+        for state in model.policy.optimizer.state_dict()["state"].values()
+        for value in state.values()
+    ]
+    return weights, moments, [normal.obs_rms.mean, normal.obs_rms.var, normal.ret_rms.mean, normal.ret_rms.var], curve
+
+
+def assert_same(one, two):
+    for first, second in zip(learned(one)[:3], learned(two)[:3], strict=True):
+        pairs = first.items() if isinstance(first, dict) else enumerate(first)
+        for key, value in pairs:
+            np.testing.assert_array_equal(value, second[key])
+    assert learned(one)[3] == learned(two)[3]
+
+
+def test_a_run_leaves_model_statistics_curve_config_and_versions(tiny_run):
+    config = yaml.safe_load((tiny_run / "config.yaml").read_text())
+    assert config["env"] == {"observation": "onboard", "settle": 0.1}
+    assert config["hidden"] == [8]
+    assert json.loads((tiny_run / "versions.json").read_text())["torch"] == torch.__version__
+    state = json.loads((tiny_run / "state.json").read_text())
+    assert (state["seed"], state["steps"]) == (7, 3 * STEPS)
+    with (tiny_run / "curve.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [int(row["steps"]) for row in rows] == [STEPS, 2 * STEPS, 3 * STEPS]
+    assert all(int(row["episodes"]) == 4 for row in rows)  # 2 environments, 10 steps each, episodes of 5
+    assert all(np.isfinite([float(value) for value in row.values()]).all() for row in rows)
+    assert {p.name for p in (tiny_run / "checkpoints").iterdir()} == {f"{n * STEPS:09d}" for n in (1, 2, 3)}
+    assert (tiny_run / "curve.png").read_bytes().startswith(b"\x89PNG")
+    assert list((tiny_run / "tensorboard").glob("events.*"))
+    assert not list(tiny_run.glob("*.tmp"))
+
+
+def test_weights_and_statistics_move_with_every_chunk(tiny_run):
+    seen = []
+    for folder in sorted((tiny_run / "checkpoints").iterdir()):
+        model = PPO.load(folder / "model.zip", device="cpu")
+        assert model.num_timesteps == int(folder.name)
+        with (folder / "vecnormalize.pkl").open("rb") as file:
+            count = pickle.load(file).obs_rms.count
+        seen.append((model.policy.mlp_extractor.actor[0].weight.detach().numpy().copy(), count))
+    assert all(np.abs(a[0] - b[0]).max() > 0 and b[1] > a[1] for a, b in pairwise(seen))
+
+
+def test_a_run_killed_in_its_second_chunk_and_resumed_equals_one_that_was_not(tiny_run, tiny_config, tmp_path, cli):
+    out = tmp_path / "killed"
+    code = "from tensegym.cli import main; main()"
+    arguments = ["train", "--config", str(tiny_config), "--out", str(out), "--seed", "7"]
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )  # fmt: skip
+    while not (out / "checkpoints" / f"{STEPS:09d}").is_dir():
+        assert process.poll() is None
+        time.sleep(0.002)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    assert not (out / "checkpoints" / f"{3 * STEPS:09d}").exists()
+
+    status, _, _ = cli("train", "--resume", "--out", out)
+    assert status == 0
+    assert_same(out, tiny_run)
+
+
+def test_a_kill_amid_writing_is_resumed_from_the_last_whole_checkpoint(tiny_run, tmp_path, cli):
+    """The curve is a row ahead, a checkpoint is half written, and the run's copies are of two different ones."""
+    out = tmp_path / "torn"
+    shutil.copytree(tiny_run, out)
+    second, third = (out / "checkpoints" / f"{n * STEPS:09d}" for n in (2, 3))
+    third.rename(out / "checkpoint.tmp")
+    (out / "checkpoint.tmp" / "state.json").unlink()
+    (out / "model.zip").write_bytes((out / "model.zip").read_bytes()[:100])
+    shutil.copy(second / "state.json", out / "state.json")
+
+    status, output, _ = cli("train", "--resume", "--out", out, "--json")
+    assert status == 0
+    assert json.loads(output)["steps"] == 3 * STEPS
+    assert_same(out, tiny_run)
+
+
+def test_a_kill_before_the_first_checkpoint_starts_again(tiny_run, tmp_path, cli):
+    out = tmp_path / "young"
+    out.mkdir()
+    for name in ("config.yaml", "versions.json"):
+        shutil.copy(tiny_run / name, out / name)
+    (out / "curve.csv").write_text((tiny_run / "curve.csv").read_text().splitlines()[0] + "\n")
+    (out / "state.json").write_text(json.dumps({"seed": 7, "steps": 0, "seconds": 0.0}))
+    assert cli("train", "--resume", "--out", out)[0] == 0
+    assert_same(out, tiny_run)
+
+
+def test_another_seed_learns_something_else(tiny_run, tiny_config, tmp_path, cli):
+    out = tmp_path / "other"
+    assert cli("train", "--config", tiny_config, "--out", out, "--seed", "8", "--steps", STEPS)[0] == 0
+    first = PPO.load(tiny_run / "checkpoints" / f"{STEPS:09d}" / "model.zip", device="cpu").policy.state_dict()
+    other = PPO.load(out / "model.zip", device="cpu").policy.state_dict()
+    assert any((first[name] != other[name]).any() for name in first)
+    assert yaml.safe_load((out / "config.yaml").read_text())["steps"] == STEPS
+
+
+def test_resuming_nothing_is_refused(tmp_path, cli):
+    assert_refused(cli("train", "--resume", "--out", tmp_path / "none"), "nothing to resume", "state.json")
+    assert not (tmp_path / "none").exists()
+
+
+def test_a_folder_in_use_is_refused(tiny_run, tiny_config, cli):
+    before = sorted(p.name for p in tiny_run.iterdir())
+    assert_refused(cli("train", "--config", tiny_config, "--out", tiny_run), "is not empty", "--resume")
+    assert sorted(p.name for p in tiny_run.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("env: {observatoin: full}", ["observatoin"]),
+        ("env_id: tensegym/Nothing-v0", ["tensegym/Nothing-v0"]),
+        ("env: {control_period: 0}", ["control_period"]),
+        ("env: {reward: {slip: -1}}", ["RewardWeights.slip = -1"]),
+        ("env: 3", ["env = 3", "mapping"]),
+        ("stepss: 3", ["unknown field 'stepss'"]),
+        ("steps: 1.5", ["steps = 1.5", "whole number"]),
+        ("n_envs: 0", ["n_envs = 0"]),
+        ("learning_rate: 4e-4", ["learning_rate = '4e-4'", "1.0e-4"]),
+        ("gamma: 1.5", ["gamma = 1.5", "(0, 1]"]),
+        ("hidden: 8.5", ["hidden = [8.5]"]),
+        ("batch_size: 2000", ["batch_size = 2000", "800"]),
+        ("target_kl: soon", ["target_kl = 'soon'"]),
+        ("- 1", ["must be a mapping"]),
+        ("a: [", ["is not YAML"]),
+    ],
+)
+def test_a_bad_config_is_refused_and_nothing_is_written(text, words, tmp_path, cli):
+    (tmp_path / "bad.yaml").write_text(text)
+    assert_refused(cli("train", "--config", tmp_path / "bad.yaml", "--out", tmp_path / "run"), *words)
+    assert [p.name for p in tmp_path.iterdir()] == ["bad.yaml"]
+
+
+def test_a_missing_or_unknown_config_and_no_steps_are_refused(tmp_path, cli):
+    out = tmp_path / "run"
+    assert_refused(cli("train", "--config", tmp_path / "none.yaml", "--out", out), "none.yaml")
+    assert_refused(cli("train", "--config", "rollin", "--out", out), "unknown training config 'rollin'", "rolling")
+    assert_refused(cli("train", "--steps", "0", "--out", out), "steps = 0")
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("name", ["rolling", "onboard"])
+def test_the_committed_configs_are_sound(name):
+    from tensegym.train.config import load_config
+    from tensegym.train.ppo import make_env
+
+    config = load_config(name)
+    env = make_env(config)
+    assert env.spec.max_episode_steps * config.env["control_period"] == pytest.approx(config.episode_seconds)
+    assert config.rollout_steps % config.batch_size == 0
+    env.close()
