@@ -6,7 +6,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from . import fem
-from .presets import cross_spring
+from .presets import preset
 from .states import FloatArray, States
 
 
@@ -19,7 +19,7 @@ def centre_shift(states: States, length: float, place: float) -> FloatArray:
 
 def crossing_shift(crossing: float, angle: float, elements: int = fem.ELEMENTS, **dimensions: float) -> float:
     """Shift [m] of the crossing point of a cross-spring pivot turned by a pure moment to ``angle`` [rad]."""
-    hinge = cross_spring(crossing=crossing, **dimensions)
+    hinge = preset("cross-spring", crossing=crossing, **dimensions)
     states = fem.rotate(hinge, angle * np.arange(1, 5) / 4, elements=elements).states()
     return float(centre_shift(states, hinge.length, crossing * hinge.length)[-1])
 
@@ -27,8 +27,8 @@ def crossing_shift(crossing: float, angle: float, elements: int = fem.ELEMENTS, 
 def least_shift_crossing(angle: float, elements: int = fem.ELEMENTS, **dimensions: float) -> tuple[float, float]:
     """Crossing fraction in (0, 0.5) of least centre shift at ``angle`` [rad], and that shift [m].
 
-    The known answer is near 0.13. For slender leaves of length l that cross at the half angle alpha the shift begins as
-    |9 c^2 - 9 c + 1| theta^2 l / (15 cos alpha) with the crossing fraction c, so it is least at (3 - sqrt 5)/6 = 0.1273.
+    The known answer is near 0.13. For slender leaves of length l that cross at half angle alpha the shift begins as
+    |9 c^2 - 9 c + 1| theta^2 l / (15 cos alpha) in the crossing fraction c: least at (3 - sqrt 5)/6 = 0.1273.
     """
     grid = np.linspace(0.02, 0.48, 24)
     best = grid[int(np.argmin([crossing_shift(c, angle, elements, **dimensions) for c in grid]))]

@@ -33,6 +33,8 @@ class Memory(NamedTuple):
     """(k, 3) x, y, turn of every leaf node."""
     axial: FloatArray
     """(k,) axial force of the element after each node [N]."""
+    held: FloatArray
+    """(4,) force x, y and moment about the tip that hold the last settled state, and its energy."""
     strains: FloatArray
     back: FloatArray
     blocks: FloatArray
@@ -50,7 +52,7 @@ def memory(mesh):
         total += mesh.ends[m, 2] + 1
     size = 3 * (len(mesh.rest) - 1)
     new = Memory(
-        mesh.rest.copy(), np.zeros((total, 3)), np.zeros(total), np.zeros((total, 5)),
+        mesh.rest.copy(), np.zeros((total, 3)), np.zeros(total), np.zeros(4), np.zeros((total, 5)),
         np.zeros((total + 2, 21)), np.zeros((3, 9)), np.zeros((4, 3)), np.zeros((size, size)), np.zeros((2, size)),
         np.zeros((len(mesh.rest), 3)))  # fmt: skip
     for m in range(len(mesh.ends)):
@@ -65,8 +67,9 @@ def memory(mesh):
 
 @njit(**OPTIONS)
 def copy_state(source, target):
-    """Poses, nodes and axial forces of one memory into another."""
+    """Poses, nodes, axial and holding forces of one memory into another."""
     target.poses[:], target.nodes[:], target.axial[:] = source.poses, source.nodes, source.axial
+    target.held[:] = source.held
 
 
 @njit(**OPTIONS)

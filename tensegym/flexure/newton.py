@@ -18,7 +18,10 @@ ROTATION, LOAD = 0, 1
 THETA, FX, FY, MZ, WX, WY, WM, ARM = range(8)
 TOLERANCE = 1e-7  # largest increment [rad, element lengths]; Newton converges quadratically, so the error is its square
 ITERATIONS = 15
-LARGEST_TURN = 0.25  # rad between accepted states, so that no instability is stepped over
+# Between accepted states, so that no instability is stepped over: the turn of any body [rad], and the gap between the
+# energy gained and the work of the tip's loads by the trapezoid rule, of their size. A jump to another branch does not
+# balance; along a branch the gap falls with the square of the step.
+LARGEST_TURN, LARGEST_GAP = 0.25, 0.05
 SMALLEST_STEP = 1e-4  # of a path, where it is given up
 
 
@@ -90,13 +93,40 @@ def newton(mesh, mem, mode, ask):
 
 
 @njit(**OPTIONS)
+def settle(mesh, mem, mode, ask, multiplier):
+    """Note what holds a converged state, and its energy."""
+    turn = mem.poses[len(mesh.rest) - 1, 2]
+    scale = multiplier if mode == ROTATION else 0.0
+    lever = ask[ARM] * (math.cos(turn) * ask[FY] - math.sin(turn) * ask[FX])
+    mem.held[0] = ask[FX] + scale * ask[WX]
+    mem.held[1] = ask[FY] + scale * ask[WY]
+    mem.held[2] = ask[MZ] + scale * ask[WM] + lever
+    mem.held[3] = strain_energy(mesh, mem)
+
+
+@njit(**OPTIONS)
+def near(mesh, mem, before):
+    """Whether two settled states are neighbours on one branch."""
+    tip = len(mesh.rest) - 1
+    for b in range(1, tip + 1):
+        if abs(mem.poses[b, 2] - before.poses[b, 2]) > LARGEST_TURN:
+            return False
+    work, size = 0.0, 0.0
+    for i in range(3):
+        share = 0.5 * (mem.held[i] + before.held[i]) * (mem.poses[tip, i] - before.poses[tip, i])
+        work += share
+        size += abs(share)
+    gain = mem.held[3] - before.held[3]
+    return abs(gain - work) <= LARGEST_GAP * (abs(gain) + size) + 1e-12 * (mem.held[3] + before.held[3])
+
+
+@njit(**OPTIONS)
 def path(mesh, mem, spare, mode, start, target):
     """Follow the states between two asked ones: (status, multiplier, fraction reached, free stable).
 
     BUCKLED: between the last stable state and a slightly larger load the tangent loses its positive definiteness (a
     bifurcation), or no state is near any more (a limit point); the fraction says where.
     """
-    tip = len(mesh.rest) - 1
     done, stride = 0.0, 1.0
     unstable = False
     ask = np.empty(8)
@@ -109,9 +139,8 @@ def path(mesh, mem, spare, mode, start, target):
         copy_state(mem, spare)
         good, factor_, held, free_ = newton(mesh, mem, mode, ask)
         if good:
-            for b in range(1, tip + 1):
-                if abs(mem.poses[b, 2] - spare.poses[b, 2]) > LARGEST_TURN:
-                    good = False
+            settle(mesh, mem, mode, ask, factor_)
+            good = near(mesh, mem, spare)
         stable = held if mode == ROTATION else free_
         if good and stable:
             done, multiplier, free = end, factor_, free_
@@ -154,13 +183,12 @@ def sweep(mesh, mode, asks, from_rest, keep_nodes):
         if known == 3:  # quadratic extrapolation: saves an iteration or two on an even sweep
             extrapolate(mesh, history[i % 3], history[(i + 1) % 3], history[(i + 2) % 3], mem)
             good, multiplier, held, free = newton(mesh, mem, mode, ask)
-            near = good and (held if mode == ROTATION else free)
             before = history[(i + 2) % 3]
-            for b in range(1, tip + 1):
-                near = near and abs(mem.poses[b, 2] - before.poses[b, 2]) < LARGEST_TURN
-            if near:
-                state, done = CONVERGED, 1.0
-            else:
+            if good and (held if mode == ROTATION else free):
+                settle(mesh, mem, mode, ask, multiplier)
+                if near(mesh, mem, before):
+                    state, done = CONVERGED, 1.0
+            if state != CONVERGED:
                 copy_state(before, mem)
         if state != CONVERGED:
             state, multiplier, done, free = path(mesh, mem, spare, mode, start, ask)
@@ -174,15 +202,8 @@ def sweep(mesh, mode, asks, from_rest, keep_nodes):
             copy_state(mem, history[i % 3])
             known = min(known + 1, 3)
             start[:] = ask
-        turn = mem.poses[tip, 2]
-        if mode == LOAD:
-            multiplier = 0.0
-        c, s = math.cos(turn), math.sin(turn)
-        results[i, 0], results[i, 1], results[i, 2] = turn, mem.poses[tip, 0], mem.poses[tip, 1]
-        results[i, 3] = ask[FX] + multiplier * ask[WX]
-        results[i, 4] = ask[FY] + multiplier * ask[WY]
-        results[i, 5] = ask[MZ] + multiplier * ask[WM] + ask[ARM] * (c * ask[FY] - s * ask[FX])
-        results[i, 6] = strain_energy(mesh, mem)
+        results[i, 0], results[i, 1], results[i, 2] = mem.poses[tip, 2], mem.poses[tip, 0], mem.poses[tip, 1]
+        results[i, 3:7] = mem.held
     return results, status, stable, nodes
 
 
