@@ -1,0 +1,168 @@
+"""The package as pyproject.toml, the links and the imports make it."""
+
+import re
+import subprocess
+import sys
+import tomllib
+from importlib.metadata import distributions, version
+from pathlib import Path
+
+import pytest
+
+import tensegym
+
+ROOT = Path(__file__).parent.parent
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
+LINKED = ("envs", "train", "urdf")
+
+
+def python(code, cwd=None):
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=cwd)
+
+
+def test_packages_are_the_folders_with_an_init():
+    found = {"tensegym"}
+    for top in ("tensegym", *LINKED):
+        for init in (ROOT / top).rglob("__init__.py"):
+            parts = init.parent.relative_to(ROOT).parts
+            if parts[0] == "tensegym" and len(parts) > 1 and parts[1] in LINKED:
+                continue  # through a link
+            found.add(".".join(parts if parts[0] == "tensegym" else ("tensegym", *parts)))
+    assert sorted(PROJECT["tool"]["setuptools"]["packages"]) == sorted(found)
+
+
+def test_no_module_lies_in_a_folder_without_an_init():
+    bare = {
+        path.parent
+        for top in ("tensegym", *LINKED)
+        for path in (ROOT / top).rglob("*.py")
+        if not (path.parent / "__init__.py").is_file()
+    }
+    assert bare == set()
+
+
+@pytest.mark.parametrize("name", LINKED)
+def test_links_are_relative_and_lead_where_the_package_dir_says(name):
+    link = ROOT / "tensegym" / name
+    assert link.is_symlink()
+    assert str(link.readlink()) == f"../{name}"
+    assert link.resolve() == ROOT / name
+    assert PROJECT["tool"]["setuptools"]["package-dir"][f"tensegym.{name}"] == name
+
+
+def test_every_data_file_is_packaged():
+    """Whatever git keeps under the package's folders is Python, or matched by package-data."""
+    listed = subprocess.run(["git", "ls-files", "tensegym", *LINKED], capture_output=True, text=True, cwd=ROOT)
+    if listed.returncode:
+        pytest.skip("not a git checkout")
+    data = PROJECT["tool"]["setuptools"]["package-data"]
+    missing = []
+    for name in listed.stdout.splitlines():
+        path = ROOT / name
+        if path.suffix == ".py" or path.is_symlink() or not path.exists():
+            continue
+        parts = Path(name).parts if name.startswith("tensegym/") else ("tensegym", *Path(name).parts)
+        packages = [(".".join(parts[:n]), Path(*parts[n:])) for n in range(1, len(parts))]
+        if not any(relative.full_match(p) if hasattr(relative, "full_match") else relative.match(p)
+                   for package, relative in packages for p in data.get(package, [])):  # fmt: skip
+            missing.append(name)
+    assert missing == []
+
+
+@pytest.mark.parametrize("name", ["envs", "train"])
+def test_the_bare_folder_refuses_to_be_imported(name):
+    done = python(f"import {name}", cwd=ROOT)
+    assert done.returncode == 1
+    assert f"import tensegym.{name}, not {name}" in done.stderr
+
+
+def test_only_one_module_imports_pybullet():
+    importing = {
+        path.relative_to(ROOT).as_posix()
+        for top in ("tensegym", *LINKED)
+        for path in (ROOT / top).rglob("*.py")
+        if re.search(r"^\s*(import|from)\s+pybullet\b", path.read_text(), re.MULTILINE)
+    }
+    assert importing - {"tensegym/bullet.py"} == set()
+    assert "tensegym/bullet.py" in importing
+
+
+def test_every_pybullet_call_names_its_client():
+    source = (ROOT / "tensegym" / "bullet.py").read_text()
+    calls = re.findall(r"pybullet\.([a-z]\w*)\(((?:[^()]|\([^()]*(?:\([^()]*\)[^()]*)*\))*)\)", source)
+    assert len(calls) > 15
+    nameless = [name for name, arguments in calls if "client" not in arguments and name not in ("connect",)]
+    assert nameless == []
+
+
+def test_importing_brings_no_learning_and_no_plotting():
+    heavy = ("torch", "stable_baselines3", "matplotlib", "moviepy", "tensorboard", "tqdm", "yaml")
+    code = f"import sys, tensegym, tensegym.cli, gymnasium; print([m for m in {heavy} if m in sys.modules])"
+    assert python(code).stdout.splitlines()[0] == "[]"
+
+
+@pytest.mark.parametrize("command", ["simulate", "validate", "step"])
+def test_commands_without_learning_load_none(command):
+    from tensegym.cli import COMMANDS
+
+    module = COMMANDS[command][0].split(":")[0]
+    code = f"import sys, {module}; print([m for m in ('torch', 'stable_baselines3', 'matplotlib') if m in sys.modules])"
+    assert python(code).stdout.splitlines()[0] == "[]"
+
+
+def test_version_is_pyprojects():
+    assert tensegym.__version__ == version("tensegym") == PROJECT["project"]["version"]
+
+
+def _name(requirement):
+    return re.match(r"[\w.-]+", requirement).group().lower().replace("_", "-").replace(".", "-")
+
+
+def _pins():
+    lines = [line.split("#")[0].strip() for line in (ROOT / "constraints.txt").read_text().splitlines()]
+    return dict(re.fullmatch(r"([\w.-]+)==([\w.+-]+)", line).groups() for line in lines if line)
+
+
+def test_constraints_pin_every_requirement():
+    pins = {_name(name): number for name, number in _pins().items()}
+    project = PROJECT["project"]
+    wanted = [*project["dependencies"], *(r for extra in project["optional-dependencies"].values() for r in extra)]
+    assert {_name(r) for r in wanted} - set(pins) == set()
+    assert pins["torch"] == "2.13.0"
+    from packaging.requirements import Requirement
+
+    for requirement in map(Requirement, wanted):
+        assert requirement.specifier.contains(pins[_name(requirement.name)]), requirement
+
+
+def test_what_runs_here_is_what_the_constraints_pin():
+    installed = {_name(d.metadata["Name"]): d.version.split("+")[0] for d in distributions()}
+    pins = {_name(name): number for name, number in _pins().items()}
+    off = {name: (installed[name], pins[name]) for name in installed.keys() & pins if installed[name] != pins[name]}
+    assert off == {}
+    assert len(installed.keys() & pins) > 30
+
+
+def test_core_and_extras_are_those_of_the_plan():
+    project = PROJECT["project"]
+    core = {_name(r) for r in project["dependencies"]}
+    assert core >= {"pybullet", "numpy", "scipy", "gymnasium", "numba", "tyro"}
+    assert not core & {"torch", "stable-baselines3", "matplotlib"}
+    train = {_name(r) for r in project["optional-dependencies"]["train"]}
+    assert train >= {"stable-baselines3", "torch", "tensorboard", "tqdm", "rich", "matplotlib", "moviepy"}
+    dev = {_name(r) for r in project["optional-dependencies"]["dev"]}
+    assert dev >= {"pytest", "hypothesis", "ruff", "mypy"}
+    assert project["scripts"] == {"tensegym": "tensegym.cli:main"}
+
+
+def test_the_licence_is_mits_and_is_there():
+    assert PROJECT["project"]["license"] == "MIT"
+    assert (ROOT / "LICENSE").read_text().startswith("MIT License")
+
+
+def test_files_name_no_place_on_a_machine():
+    """The URDFs, configs and policies that ship are the same wherever they were written."""
+    for top in LINKED:
+        for path in (ROOT / top).rglob("*"):
+            if path.suffix in (".urdf", ".yaml", ".json"):
+                assert not re.search(r"(/home/|/work/|/root/|/tmp/|/Users/)", path.read_text()), path
