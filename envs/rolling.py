@@ -107,6 +107,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         self.dt = dt
         self._observation_kind = observation
         self.robot = self._build(as_design(design))
+        self._diverged = False
         bound = self.observer.bound
         self.observation_space: spaces.Box = spaces.Box(-bound, bound, dtype=np.float32)
         self.action_space: spaces.Box = spaces.Box(-1.0, 1.0, (len(self.robot.drives),), dtype=np.float32)
@@ -142,6 +143,10 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
                 raise DesignError(f"reset option {name} = {value!r} must be a finite angle [rad]")
         if not isinstance(options.get("face", 0), int | np.integer):
             raise DesignError(f"reset option face = {options['face']!r} must be a whole number")
+        if self._diverged:  # what is left in the engine's caches may be no numbers either
+            self.robot.close()
+            self.robot = self._build(self.robot.design)
+            self._diverged = False
         if "design" in options:
             self._change_design(as_design(options["design"]))
         face = options.get("face", int(self.np_random.integers(len(self.robot.faces.triangles))))
@@ -196,6 +201,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
             if not (np.abs(observation) <= self.observer.bound).all():
                 reason = f"left the observation's bounds ({NODE_REACH:g} rod lengths from the centre)"
         if reason:
+            self._diverged = True
             return (np.zeros(self.observation_space.shape, np.float32), 0.0, True, False,
                     {"termination": reason, "reward_terms": reward_terms(self.weights, 0.0, 0.0, 0.0),
                      "gait": self._gait})  # fmt: skip

@@ -28,8 +28,9 @@ def _disconnect(client: int) -> None:
 class World:
     """A physics client with bodies in it.
 
-    Bodies are rigid, in maximal coordinates (a seventh of the bare step cheaper here than multibodies, and their
-    gyroscopic step loses energy where the multibodies' gains it), with true inertia, no damping and no sleeping.
+    Bodies are rigid, each a multibody of one link, with true inertia, no damping and no sleeping. Maximal coordinates
+    would be a little cheaper, but there the engine solves friction along one direction only, that of the sliding the
+    step would begin with, and what is left across it lets loaded feet creep by 7 cm/s at 2 ms on a robot at rest.
     """
 
     def __init__(self, dt: float, gravity: float, gui: bool = False) -> None:
@@ -57,7 +58,7 @@ class World:
     def load(self, urdf: Path, pose: Sequence[float], friction: float) -> int:
         """Load a one-link URDF at pose (7,) position and xyzw; returns its row in `poses`."""
         body = pybullet.loadURDF(
-            str(urdf), list(pose[:3]), list(pose[3:]), useMaximalCoordinates=1,
+            str(urdf), list(pose[:3]), list(pose[3:]), useMaximalCoordinates=0,
             flags=pybullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=self.client,
         )  # fmt: skip
         # contacts multiply the two bodies' coefficients
@@ -76,7 +77,7 @@ class World:
     def add_ground(self, friction: float) -> None:
         """The plane z = 0."""
         shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self.client)
-        self.ground = pybullet.createMultiBody(0, shape, useMaximalCoordinates=1, physicsClientId=self.client)
+        self.ground = pybullet.createMultiBody(0, shape, physicsClientId=self.client)
         pybullet.changeDynamics(
             self.ground, -1, lateralFriction=math.sqrt(friction), restitution=0, physicsClientId=self.client
         )
@@ -85,19 +86,9 @@ class World:
         )
 
     def place(self, poses: FloatArray, velocities: FloatArray | None = None) -> None:
-        """Set every body's pose (b, 7) and velocity (b, 6) linear, angular; at rest by default.
-
-        Setting a pose leaves the engine's world inertia as it was, which only a step renews. So the bodies are placed
-        twice: out of reach of the ground for a step at rest, then where they belong.
-        """
-        away = poses.copy()
-        away[:, 2] += 100.0
-        self._set(away, np.zeros((len(poses), 6)))
-        pybullet.stepSimulation(self.client)
-        self._set(poses, np.zeros((len(poses), 6)) if velocities is None else velocities)
-
-    def _set(self, poses: FloatArray, velocities: FloatArray) -> None:
-        for body, pose, velocity in zip(self.bodies, poses.tolist(), velocities.tolist(), strict=True):
+        """Set every body's pose (b, 7) and velocity (b, 6) linear, angular; at rest by default."""
+        moving = np.zeros((len(poses), 6)) if velocities is None else velocities
+        for body, pose, velocity in zip(self.bodies, poses.tolist(), moving.tolist(), strict=True):
             pybullet.resetBasePositionAndOrientation(body, pose[:3], pose[3:], physicsClientId=self.client)
             pybullet.resetBaseVelocity(body, velocity[:3], velocity[3:], physicsClientId=self.client)
 

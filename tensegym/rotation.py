@@ -1,9 +1,9 @@
 """Turning of thin rods, to second order and without drift.
 
-Bullet steps the gyroscopic term by one linearised implicit Euler update in body axes, which costs a spinning rod
-energy and angular momentum in proportion to dt. The kernel knows that update, so it commands the torque that makes the
-step come out as leapfrog does: L(n + 1/2) = L(n - 1/2) + dt torque(n), with L = I(axis at the half step) w. That
-conserves angular momentum exactly and the spin of a free rod too.
+Bullet steps the gyroscopic term by explicit Euler, which gives a spinning rod energy and angular momentum in proportion
+to dt. The kernel knows that update, so it commands the torque that makes the step come out as leapfrog does:
+L(n + 1/2) = L(n - 1/2) + dt torque(n), with L = I(axis at the half step) w. That conserves angular momentum exactly and
+the spin of a free rod too.
 """
 
 from __future__ import annotations
@@ -61,29 +61,13 @@ def _turned(axis, w, angle_time, out):
 def bullet_gyroscopic_change(w, axis, across, along, dt, out):
     """What Bullet adds to the angular velocity w (3,) for the gyroscopic term, world axes.
 
-    One Newton step of implicit Euler, I (w' - w) + dt w' x I w' = 0, for moments ``across`` and ``along`` ``axis``. In
-    axes (e1, e2, axis) with e1 along the part of w across the axis, w = (p, 0, s), it has this closed form.
+    Explicit Euler, -dt I^-1 (w x I w), which for moments ``across`` and ``along`` ``axis`` is this closed form.
     """
-    s = w[0] * axis[0] + w[1] * axis[1] + w[2] * axis[2]
-    px, py, pz = w[0] - s * axis[0], w[1] - s * axis[1], w[2] - s * axis[2]
-    p = np.sqrt(px * px + py * py + pz * pz)
-    if p < 1e-12 or abs(s) < 1e-12:
-        out[:] = 0.0
-        return
-    e1x, e1y, e1z = px / p, py / p, pz / p
-    e2x = axis[1] * e1z - axis[2] * e1y
-    e2y = axis[2] * e1x - axis[0] * e1z
-    e2z = axis[0] * e1y - axis[1] * e1x
-    # residual f = dt w x I w = (0, dt p s (across - along), 0); Jacobian row by row, third row uncoupled at w2 = 0
-    k = dt * (across - along)
-    f2 = k * p * s
-    # the Jacobian's third row is (0, 0, along): nothing along the axis, and a 2 x 2 block for the rest
-    determinant = across * across + (k * s) * (k * s)
-    x1 = k * s * f2 / determinant
-    x2 = across * f2 / determinant
-    out[0] = -(x1 * e1x + x2 * e2x)
-    out[1] = -(x1 * e1y + x2 * e2y)
-    out[2] = -(x1 * e1z + x2 * e2z)
+    spin = w[0] * axis[0] + w[1] * axis[1] + w[2] * axis[2]
+    factor = -dt * spin * (across - along) / across
+    out[0] = factor * (axis[1] * w[2] - axis[2] * w[1])
+    out[1] = factor * (axis[2] * w[0] - axis[0] * w[2])
+    out[2] = factor * (axis[0] * w[1] - axis[1] * w[0])
 
 
 @njit(cache=True)

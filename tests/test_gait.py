@@ -112,7 +112,6 @@ def test_a_step_counts_its_tips_and_its_energy():
         assert gait.audit_passed
 
 
-@pytest.mark.xfail(strict=True, reason="Bullet's single friction direction lets loaded feet creep by a step's pull")
 @pytest.mark.parametrize("face", [2, 3, 4])
 def test_a_robot_at_rest_stays_where_it_is(face):
     """Undriven: friction holds the feet against the cables' pull."""
