@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from .beam import OPTIONS
-from .chain import AX, AY, BX, BY, recover
+from .chain import AX, AY, BX, BY, EA, L0, recover
 from .frame import assemble, backward, copy_state, factor, forward, memory, place_ends, strain_energy
 
 CONVERGED, BUCKLED, FAILED = 0, 1, 2
@@ -22,21 +22,24 @@ ITERATIONS = 15
 # energy gained and the work of the tip's loads by the trapezoid rule, of their size. A jump to another branch does not
 # balance; along a branch the gap falls with the square of the step.
 LARGEST_TURN, LARGEST_GAP = 0.25, 0.05
+# A branch leaves a bifurcation across the tangent: the way gone must not be this many times the tangent's guess.
+LARGEST_DETOUR, SMALLEST_DETOUR = 3.0, 1e-6
 SMALLEST_STEP = 1e-4  # of a path, where it is given up
 
 
 @njit(**OPTIONS)
 def newton(mesh, mem, mode, ask):
-    """Solve for one asked state from where ``mem`` is: (converged, multiplier, held stable, free stable).
+    """Solve for one asked state from where ``mem`` is: (converged, multiplier, held stable, free stable, first step).
 
-    Held stable: a minimum of the energy at the asked turn; free stable: a minimum under the dead load.
+    The first step is the largest increment of the first iteration, the tangent's guess [rad, element lengths]. Held
+    stable: a minimum of the energy at the asked turn; free stable: a minimum under the dead load.
     """
     tip = len(mesh.rest) - 1
     size = 3 * tip
     matrix, right, step = mem.matrix, mem.right[0], mem.right[1]
     scale = 1 / mesh.rest[tip, 0] if mesh.rest[tip, 0] != 0.0 else 1.0
-    multiplier = 0.0
-    for _ in range(ITERATIONS):
+    multiplier, first_step = 0.0, 0.0
+    for iteration in range(ITERATIONS):
         inner = assemble(mesh, mem)
         turn = mem.poses[tip, 2]
         lever_x, lever_y = ask[ARM] * math.cos(turn), ask[ARM] * math.sin(turn)
@@ -65,7 +68,7 @@ def newton(mesh, mem, mode, ask):
         for b in range(tip):
             largest = max(largest, abs(right[3 * b]) * scale, abs(right[3 * b + 1]) * scale, abs(right[3 * b + 2]))
         if not largest < 10.0:
-            return False, multiplier, False, False
+            return False, multiplier, False, False, first_step
         for m in range(len(mesh.ends)):
             a, b, count, first = mesh.ends[m]
             real = mesh.real[m]
@@ -86,10 +89,12 @@ def newton(mesh, mem, mode, ask):
                 mem.poses[b, i] += right[3 * (b - 1) + i]
         for m in range(len(mesh.ends)):
             place_ends(mesh, mem, m)
-        if largest < TOLERANCE:
+        if iteration == 0:
+            first_step = largest
+        if largest < TOLERANCE and iteration > 0:  # stability is judged on the tangent at this state, not the last one
             held = negative + inner == 0
-            return True, multiplier, held, held and not last
-    return False, multiplier, False, False
+            return True, multiplier, held, held and not last, first_step
+    return False, multiplier, False, False, first_step
 
 
 @njit(**OPTIONS)
@@ -117,7 +122,20 @@ def near(mesh, mem, before):
         work += share
         size += abs(share)
     gain = mem.held[3] - before.held[3]
-    return abs(gain - work) <= LARGEST_GAP * (abs(gain) + size) + 1e-12 * (mem.held[3] + before.held[3])
+    rounding = 1e-20 * mesh.real[0, EA] * mesh.real[0, L0] + 1e-12 * (mem.held[3] + before.held[3])
+    return abs(gain - work) <= LARGEST_GAP * (abs(gain) + size) + rounding
+
+
+@njit(**OPTIONS)
+def moved(mesh, mem, before):
+    """Largest change of any node, as ``newton`` counts increments [rad, element lengths]."""
+    largest = 0.0
+    for m in range(len(mesh.ends)):
+        _, _, count, first = mesh.ends[m]
+        for i in range(first, first + count + 1):
+            along = abs(mem.nodes[i, 0] - before.nodes[i, 0]) + abs(mem.nodes[i, 1] - before.nodes[i, 1])
+            largest = max(largest, abs(mem.nodes[i, 2] - before.nodes[i, 2]), 0.5 * along / mesh.real[m, L0])
+    return largest
 
 
 @njit(**OPTIONS)
@@ -125,7 +143,7 @@ def path(mesh, mem, spare, mode, start, target):
     """Follow the states between two asked ones: (status, multiplier, fraction reached, free stable).
 
     BUCKLED: between the last stable state and a slightly larger load the tangent loses its positive definiteness (a
-    bifurcation), or no state is near any more (a limit point); the fraction says where.
+    bifurcation), or no state is near any more (a limit point, or a branch across the tangent); the fraction says where.
     """
     done, stride = 0.0, 1.0
     unstable = False
@@ -137,10 +155,10 @@ def path(mesh, mem, spare, mode, start, target):
         for i in range(8):
             ask[i] = start[i] + end * (target[i] - start[i])
         copy_state(mem, spare)
-        good, factor_, held, free_ = newton(mesh, mem, mode, ask)
+        good, factor_, held, free_, first_step = newton(mesh, mem, mode, ask)
         if good:
             settle(mesh, mem, mode, ask, factor_)
-            good = near(mesh, mem, spare)
+            good = near(mesh, mem, spare) and moved(mesh, mem, spare) <= LARGEST_DETOUR * first_step + SMALLEST_DETOUR
         stable = held if mode == ROTATION else free_
         if good and stable:
             done, multiplier, free = end, factor_, free_
@@ -180,11 +198,11 @@ def sweep(mesh, mode, asks, from_rest, keep_nodes):
             known = 0
         state, done = FAILED, 0.0
         multiplier, free = 0.0, False
-        if known == 3:  # quadratic extrapolation: saves an iteration or two on an even sweep
+        if known == 3 and mode == ROTATION:  # quadratic extrapolation: saves an iteration or two on an even sweep
             extrapolate(mesh, history[i % 3], history[(i + 1) % 3], history[(i + 2) % 3], mem)
-            good, multiplier, held, free = newton(mesh, mem, mode, ask)
+            good, multiplier, held, free, _ = newton(mesh, mem, mode, ask)
             before = history[(i + 2) % 3]
-            if good and (held if mode == ROTATION else free):
+            if good and held:
                 settle(mesh, mem, mode, ask, multiplier)
                 if near(mesh, mem, before):
                     state, done = CONVERGED, 1.0
