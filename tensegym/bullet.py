@@ -6,16 +6,32 @@ import math
 import os
 import struct
 import weakref
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pybullet
 
 from .errors import SimulationError
 from .structure import FloatArray
+
+
+@contextmanager
+def _quiet_stderr() -> Iterator[None]:
+    kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 2)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(nowhere)
+
+
+with _quiet_stderr():  # it greets on stderr, where a command's error is to stand alone
+    import pybullet
 
 _ROBOT_GROUP, _GROUND_GROUP = 1, 2
 
