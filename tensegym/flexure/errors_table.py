@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
-from typing import Any, Protocol
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -34,9 +34,6 @@ class ModelError:
     """States compared."""
     lost: int
     """States where the model has no finite answer, left out of the rest."""
-
-    def as_dict(self) -> dict[str, Any]:
-        return asdict(self)
 
 
 def tip_errors(model: JointModel, states: States) -> tuple[FloatArray, FloatArray]:

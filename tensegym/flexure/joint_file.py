@@ -116,12 +116,15 @@ def _model_from_dict(name: str, data: dict[str, Any], length: float, box: Box) -
     raise FlexureError(f"unknown model {name!r} in a joint file; one of potential, planar, paper, torsion")
 
 
+_ERROR_KEYS = {"tip_rms": "tip_rms_m", "tip_max": "tip_max_m", "moment_rms": "moment_rms_share",
+               "moment_max": "moment_max_share", "reference_moment": "reference_moment_Nm", "count": "states",
+               "lost": "lost"}  # fmt: skip
+
+
 def _error_to_dict(error: ModelError) -> dict[str, Any]:
-    return {"tip_rms_m": error.tip_rms, "tip_max_m": error.tip_max, "moment_rms_share": error.moment_rms,
-            "moment_max_share": error.moment_max, "reference_moment_Nm": error.reference_moment, "states": error.count,
-            "lost": error.lost}  # fmt: skip
+    """Plain JSON: an infinite error (no state answered) is null."""
+    return {key: value if np.isfinite(value := getattr(error, name)) else None for name, key in _ERROR_KEYS.items()}
 
 
 def _error_from_dict(data: dict[str, Any]) -> ModelError:
-    return ModelError(data["tip_rms_m"], data["tip_max_m"], data["moment_rms_share"], data["moment_max_share"],
-                      data["reference_moment_Nm"], data["states"], data["lost"])  # fmt: skip
+    return ModelError(**{name: np.inf if data[key] is None else data[key] for name, key in _ERROR_KEYS.items()})

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..errors import FlexureError
 from .errors_table import tip_errors
 from .hinge import Hinge, positive
 from .joint import HELD_OUT_SEED, Joint, arm_sweep, fit_joint
@@ -39,6 +40,8 @@ def choose_model(hinge: Hinge, accepted: float, *, loads: str = "arm", joint: Jo
     joint's box. Raises FlexureError for an accepted error that is not positive.
     """
     positive("accepted", accepted, "m")
+    if loads not in ("arm", "box"):
+        raise FlexureError(f"loads = {loads!r}; arm or box")
     joint = joint or fit_joint(hinge, held_out=0)
     sweep = arm_sweep(hinge, joint.box.max_angle)
     inside = sweep.pick(np.abs(sweep.force).max(axis=1) <= joint.box.max_force)

@@ -62,16 +62,17 @@ def held_out_states(
 def states_at(hinge: Hinge, box: Box, unit: FloatArray, elements: int = fem.ELEMENTS) -> States:
     """States at ``unit`` (n, 3) in [-1, 1]: theta, force x, force y in units of the box, each by its path from rest.
 
-    Raises FlexureError when one cannot be reached: the box goes past buckling.
+    Raises FlexureError when one cannot be reached or is unstable under its dead load: the box goes past buckling.
     """
     force = box.max_force * unit[:, 1:]
     solution = fem.rotate(hinge, box.max_angle * unit[:, 0], force=force, elements=elements, from_rest=True)
-    bad = np.flatnonzero(solution.status != fem.CONVERGED)
+    bad = np.flatnonzero((solution.status != fem.CONVERGED) | ~solution.stable)
     if len(bad):
         i = int(bad[0])
+        why = solution.reason(i) or "is unstable under that dead load: past buckling"
         raise FlexureError(
             f"{hinge.name}: at theta = {np.degrees(box.max_angle * unit[i, 0]):.3g} deg with the force "
-            f"({force[i, 0]:.4g}, {force[i, 1]:.4g}) N the hinge {solution.reason(i)}; "
-            f"lower max_force = {box.max_force:.4g} N or max_angle"
+            f"({force[i, 0]:.4g}, {force[i, 1]:.4g}) N the hinge {why}; lower max_force = {box.max_force:.4g} N or "
+            "max_angle"
         )
     return solution.states()

@@ -13,6 +13,7 @@ from ...errors import InputError
 from ...files import replace_file
 from ...report import Report, table
 from .. import pictures
+from ..hinge import Hinge
 from ..joint import Joint, arm_sweep, fit_joint
 from ..measured import read_measured
 from ..presets import PAPER_HINGES
@@ -35,11 +36,11 @@ class Curves:
     box: BoxOptions = field(default_factory=BoxOptions)
 
     def run(self) -> Report:
-        measured = self._measured()
         if not self.out.parent.is_dir():
             raise FileNotFoundError(f"no folder {self.out.parent} to make {self.out.name} in")
         angle, force = self.box.max_angle, self.box.max_force_N
         hinges = {name: self.options.apply(name) for name in self.hinges}
+        measured = self._measured(hinges)
         joints = {name: fit_joint(h, max_angle=angle, max_force=force) for name, h in hinges.items()}
         tests = {name: held_out_states(joint.hinge, joint.box) for name, joint in joints.items() if joint.hinge}
         self.out.mkdir(exist_ok=True)
@@ -58,13 +59,13 @@ class Curves:
                                 "sources": {name: joint.source for name, joint in joints.items()}}  # fmt: skip
         return Report(text, data)
 
-    def _measured(self) -> dict[str, States]:
+    def _measured(self, hinges: dict[str, Hinge]) -> dict[str, States]:
         out = {}
         for item in self.data:
             name, _, file = item.partition("=")
             if not file or name not in self.hinges:
                 raise InputError(f"data {item!r}; give HINGE=FILE.csv with a hinge among {', '.join(self.hinges)}")
-            out[name] = read_measured(Path(file))
+            out[name] = read_measured(Path(file), hinges[name].arm)
         return out
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...report import Report, table
 from ..joint import HELD_OUT_SEED, TABLE_ANGLE, Joint, arm_sweep, fit_joint
+from ..joint_file import joint_to_dict
 from ..passivity import loop_work
 from ..pictures import LABELS
 from ..potential import Potential
@@ -66,7 +67,7 @@ class Table:
             third += [[name, *row] for row in error_rows(joint)]
             work = loops(joint, self.loops)
             fourth += [[name, LABELS[key], f"{w['largest']:.2g}", f"{w['median']:.2g}"] for key, w in work.items()]
-            errors = {key: error.as_dict() for key, error in joint.errors.items()}
+            errors = joint_to_dict(joint)["errors"]
             data["hinges"][name] = {"source": joint.source, "table_1": facts, "errors": errors, "loop_work": work,
                                     "table_2_s": {"fem": times.fem, "potential": times.potential, "paper": paper},
                                     "max_angle_rad": joint.box.max_angle,
