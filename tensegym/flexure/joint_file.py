@@ -127,4 +127,5 @@ def _error_to_dict(error: ModelError) -> dict[str, Any]:
 
 
 def _error_from_dict(data: dict[str, Any]) -> ModelError:
-    return ModelError(**{name: np.inf if data[key] is None else data[key] for name, key in _ERROR_KEYS.items()})
+    values: dict[str, Any] = {name: np.inf if data[key] is None else data[key] for name, key in _ERROR_KEYS.items()}
+    return ModelError(**values)
