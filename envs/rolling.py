@@ -17,7 +17,7 @@ from tensegym.design_file import as_design
 from tensegym.errors import DesignError, SimulationError
 from tensegym.gait import GaitMeter
 from tensegym.picture import draw_in_window, render
-from tensegym.robot import TensegrityRobot
+from tensegym.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityRobot
 
 from . import CONTROL_PERIOD
 from .observation import NODE_REACH, OBSERVATIONS
@@ -93,7 +93,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         if reward and set(reward) - {f.name for f in fields(RewardWeights)}:
             allowed = ", ".join(f.name for f in fields(RewardWeights))
             raise DesignError(f"unknown reward weight in {reward!r}; allowed: {allowed}")
-        for name, value, low, high in (("dt", dt, 1e-6, 5e-3), ("control_period", control_period, 1e-6, 60.0),
+        for name, value, low, high in (("dt", dt, LEAST_TIME_STEP, LARGEST_TIME_STEP), ("control_period", control_period, 1e-6, 60.0),
                                        ("settle", settle, 0.0, 60.0)):  # fmt: skip
             if not (isinstance(value, int | float) and low <= value <= high):
                 raise DesignError(f"{name} = {value!r} is outside [{low:g}, {high:g}] s")

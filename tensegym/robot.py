@@ -25,6 +25,7 @@ from .structure import FloatArray
 from .urdf_model import rod_files, urdf_files
 
 Integrator = Literal["auto", "explicit", "implicit"]
+LEAST_TIME_STEP, LARGEST_TIME_STEP = 1e-6, 4e-3  # s; at 5 ms feet and rods in contact make energy, at 4 ms none did
 SPEED_BOUND = 50.0  # m/s; nothing on these robots moves so fast unless the integration has diverged
 
 
@@ -70,8 +71,8 @@ class TensegrityRobot:
         integrator: Integrator = "auto", gui: bool = False,
     ) -> None:  # fmt: skip
         self.design = design = design or RobotDesign()
-        if not 1e-6 <= dt <= 5e-3:
-            raise DesignError(f"dt = {dt!r} is outside [1e-06, 0.005] s")
+        if not LEAST_TIME_STEP <= dt <= LARGEST_TIME_STEP:
+            raise DesignError(f"dt = {dt!r} is outside [{LEAST_TIME_STEP:g}, {LARGEST_TIME_STEP:g}] s")
         self.dt = dt
         self.cables: CableArrays = cable_arrays(design)
         limit = explicit_step_limit(self.cables)

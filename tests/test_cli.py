@@ -392,7 +392,7 @@ def test_a_bad_line_after_blank_ones_is_named_by_its_number_in_the_file(tmp_path
     [
         (["--dt", "0"], ["dt = 0.0"]),
         (["--dt", "nan"], ["dt = nan"]),
-        (["--dt", "0.1"], ["dt = 0.1", "0.005"]),
+        (["--dt", "0.1"], ["dt = 0.1", "0.004"]),
         (["--sample", "0.0015"], ["sample = 0.0015 s must be a whole number of steps of dt = 0.001 s"]),
         (["--sample", "-1"], ["sample = -1"]),
         (["--start", "upright"], ["unknown start 'upright'", "paper-1"]),

@@ -53,7 +53,7 @@ def test_stands_on_a_face_at_a_heading(face):
         centre = masses @ structure.nodes[structure.rods].mean(axis=1) / masses.sum()
         rigid = resting_height(structure.nodes, robot.faces.triangles[face], centre) + 0.004
         assert rigid - 0.05 < robot.centre_of_mass_in_world()[2] < rigid  # the cables give a little under the weight
-        assert robot.tensions[:24].min() > 0
+        assert robot.tensions[:24].min() > 3
 
 
 def test_papers_two_poses():

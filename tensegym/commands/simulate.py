@@ -15,7 +15,7 @@ from tensegym.errors import InputError
 from tensegym.files import replace_file
 from tensegym.gait import GaitMeter
 from tensegym.report import Report, table
-from tensegym.robot import TensegrityRobot
+from tensegym.robot import LARGEST_TIME_STEP, TensegrityRobot
 from tensegym.start import start_at
 from tensegym.structure import FloatArray
 
@@ -48,7 +48,7 @@ class Simulate:
         if self.out.is_dir():
             raise InputError(f"--out {self.out} is a folder; give a file")
         times, angles = read_commands(self.commands, len(design.structure.stiff_cables))
-        for name, value, high in (("dt", self.dt, 5e-3), ("sample", self.sample, 10.0)):
+        for name, value, high in (("dt", self.dt, LARGEST_TIME_STEP), ("sample", self.sample, 10.0)):
             if not 1e-6 <= value <= high:
                 raise InputError(f"{name} = {value!r} is outside [1e-06, {high:g}] s")
         every = round(self.sample / self.dt)

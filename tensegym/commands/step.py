@@ -17,7 +17,7 @@ from tensegym.errors import InputError, SimulationError
 from tensegym.faces import face_by_nodes
 from tensegym.picture import render
 from tensegym.report import Report, table
-from tensegym.robot import TensegrityRobot
+from tensegym.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityRobot
 
 FRAMES = 6
 PERIOD = 0.02  # s between two rows of the record
@@ -50,8 +50,9 @@ class Step:
         if not 0 < self.depth <= design.stiff_cable.max_pull:
             limit = design.stiff_cable.max_pull
             raise InputError(f"depth = {self.depth!r} is outside (0, {limit:g}], the design's max_pull")
-        if not 1e-6 <= self.dt <= 5e-3 or abs(PERIOD / self.dt - round(PERIOD / self.dt)) > 1e-6:
-            raise InputError(f"dt = {self.dt!r} must be in [1e-06, 0.005] s and divide {PERIOD} s")
+        low, high = LEAST_TIME_STEP, LARGEST_TIME_STEP
+        if not low <= self.dt <= high or abs(PERIOD / self.dt - round(PERIOD / self.dt)) > 1e-6:
+            raise InputError(f"dt = {self.dt!r} must be in [{low:g}, {high:g}] s and divide {PERIOD} s")
         if self.out.exists() and not self.out.is_dir():
             raise InputError(f"--out {self.out} is a file; give a folder")
         import matplotlib  # noqa: F401  # missing, it fails here, before anything is written

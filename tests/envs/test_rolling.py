@@ -278,7 +278,7 @@ def test_a_payload_env_observes_36_tensions():
         ({"control_period": 0.0}, r"control_period = 0.0 is outside"),
         ({"control_period": math.inf}, r"control_period = inf is outside"),
         ({"control_period": "slow"}, r"control_period = 'slow' is outside"),
-        ({"dt": 0.0}, r"dt = 0.0 is outside \[1e-06, 0.005\] s"),
+        ({"dt": 0.0}, r"dt = 0.0 is outside \[1e-06, 0.004\] s"),
         ({"dt": math.nan}, r"dt = nan is outside"),
         ({"settle": -0.1}, r"settle = -0.1 is outside \[0, 60\] s"),
         ({"reward": {"speed": 1.0}}, "unknown reward weight .*speed.*; allowed: progress, slip, energy"),
