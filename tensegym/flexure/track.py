@@ -105,8 +105,8 @@ def _middle_line(dark: DarkShapes, arm: Shape) -> tuple[NDArray[np.float64], flo
     """Ends (2, 2) as row, column [px], width [px] and standard error of the direction [rad] of the arm.
 
     The picture is resampled along and across the arm. Its middle line is the straight line through the centres of
-    darkness of the cross sections; its ends are where the darkness near that line falls to half, which neither blur nor
-    the grey of cut pixels moves.
+    darkness of the cross sections that have the arm's usual width: a dark leaf of the hinge that hangs on to the arm is
+    left out.
     """
     margin = max(6, round(arm.short / 2.0))
     darkness, corner = alone(dark, arm, margin)
@@ -114,11 +114,13 @@ def _middle_line(dark: DarkShapes, arm: Shape) -> tuple[NDArray[np.float64], flo
     across = np.arange(-arm.short / 2.0 - margin, arm.short / 2.0 + margin + 0.25, 0.5)
     inner = np.abs(along) < 0.45 * arm.long
     point, axis = arm.centre - corner, arm.axis
-    for _ in range(3):
+    for _ in range(4):
         normal = np.array([-axis[1], axis[0]])
         grid = point[:, None, None] + axis[:, None, None] * along[:, None] + normal[:, None, None] * across
         cut = ndimage.map_coordinates(darkness, grid, order=1, mode="constant")
-        offset = (cut @ across)[inner] / cut.sum(axis=1)[inner]
+        breadth = cut.sum(axis=1)
+        inner = _usual(breadth, float(np.median(breadth[inner])))
+        offset = (cut @ across)[inner] / breadth[inner]
         (slope, intercept), covariance = np.polyfit(along[inner], offset, 1, cov=True)
         scatter = offset - (slope * along[inner] + intercept)
         point = point + intercept * normal
@@ -126,10 +128,54 @@ def _middle_line(dark: DarkShapes, arm: Shape) -> tuple[NDArray[np.float64], flo
     if np.sqrt(np.mean(scatter**2)) > 0.1 * arm.short:
         raise FlexureError("no arm found: the longest dark shape is not a straight bar")
     core = cut[:, np.abs(across) <= max(0.5, _CORE * arm.short)].mean(axis=1)
-    level = float(np.median(core[inner]))
-    width = float(np.median(cut[inner].sum(axis=1)) * 0.5 / level)
-    ends = np.array([point - axis * _falls(core[::-1], -along[::-1], level), point + axis * _falls(core, along, level)])
+    width = 0.5 * float(np.median(breadth[inner]) / np.median(core[inner]))
+    middle = float(along[inner].mean())
+    reaches = [(sign, _end(core, breadth, sign * (along - middle), inner, width)) for sign in (-1.0, 1.0)]
+    ends = np.array([point + axis * (middle + sign * reach) for sign, reach in reaches])
     return ends + corner, width, float(np.sqrt(covariance[0, 0])) * _inflation(scatter)
+
+
+def _usual(breadth: NDArray[np.float64], level: float) -> NDArray[np.bool_]:
+    """The longest run of cross sections of about the usual breadth ``level``, a twentieth cut off at each end, (n,)."""
+    labels, count = ndimage.label((breadth > 0.6 * level) & (breadth < 1.6 * level))
+    if not count:
+        raise FlexureError("no arm found: the longest dark shape is not a straight bar")
+    run = np.flatnonzero(labels == np.bincount(labels)[1:].argmax() + 1)
+    spare = len(run) // 20
+    inner = np.zeros(len(breadth), dtype=bool)
+    inner[run[0] + spare : run[-1] + 1 - spare] = True
+    return inner
+
+
+def _end(core: NDArray[np.float64], breadth: NDArray[np.float64], reach: NDArray[np.float64],
+         inner: NDArray[np.bool_], width: float) -> float:  # fmt: skip
+    """Where along ``reach`` (n,), zero at the arm's middle, the arm ends [px].
+
+    That is where the darkness falls to half, which neither blur nor the grey of cut pixels moves: the darkness near the
+    middle line, so that a rounded end counts whole, unless something thinner than the arm goes on from there.
+    """
+    level = float(np.median(breadth[inner]))
+    end = _falls(breadth, reach, 0.5 * level)
+    beyond = breadth[(reach > end + 0.3 * width) & (reach < end + 0.8 * width)]
+    thin = float(np.median(beyond)) if beyond.size else 0.0
+    if thin > 0.07 * level:
+        end = _falls(breadth, reach, 0.5 * (level + thin))
+    else:
+        end = _falls(core, reach, 0.5 * float(np.median(core[inner])))
+    if not np.isfinite(end):
+        raise FlexureError("no arm found: the longest dark bar has no clear end")
+    return end
+
+
+def _falls(profile: NDArray[np.float64], reach: NDArray[np.float64], level: float) -> float:
+    """Where ``profile`` (n,) first falls through ``level`` beyond reach 0; infinite if it does not."""
+    order = np.argsort(reach)
+    profile, reach = profile[order], reach[order]
+    beyond = np.flatnonzero((reach > 0.0) & (profile < level))
+    if not beyond.size:
+        return float(np.inf)
+    k = int(beyond[0])
+    return float(np.interp(level, [profile[k], profile[k - 1]], [reach[k], reach[k - 1]]))
 
 
 def _inflation(scatter: NDArray[np.float64]) -> float:
@@ -137,13 +183,3 @@ def _inflation(scatter: NDArray[np.float64]) -> float:
     power = float(scatter @ scatter)
     together = sum(float(scatter[k:] @ scatter[:-k]) for k in range(1, 5)) / power if power > 0.0 else 0.0
     return float(np.sqrt(max(1.0, 1.0 + 2.0 * together)))
-
-
-def _falls(core: NDArray[np.float64], along: NDArray[np.float64], level: float) -> float:
-    """Distance from the arm's middle at which the darkness ``core`` (n,) falls through half of ``level``."""
-    start = int(np.searchsorted(along, 0.0))
-    below = np.flatnonzero(core[start:] < 0.5 * level)
-    if not below.size:
-        raise FlexureError("no arm found: the longest dark bar has no clear end")
-    k = start + int(below[0])
-    return float(np.interp(0.5 * level, [core[k], core[k - 1]], [along[k], along[k - 1]]))

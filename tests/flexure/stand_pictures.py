@@ -37,7 +37,7 @@ class Picture:
 
     @lru_cache(maxsize=4)  # noqa: B019 a few pictures, for tests that repeat one with other noise
     def _noiseless(self) -> np.ndarray:
-        n = 5
+        n = 4
         x = (np.arange(self.columns * n) + 0.5) / n - 0.5
         y = ((np.arange(self.rows * n) + 0.5) / n - 0.5)[:, None]
         c, s = np.cos(np.radians(self.angle_deg)), -np.sin(np.radians(self.angle_deg))

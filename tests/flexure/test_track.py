@@ -67,6 +67,18 @@ def test_specks_of_dirt_change_nothing():
     assert dirty.marker == pytest.approx(clean.marker, abs=0.02)
 
 
+@pytest.mark.parametrize("bend_deg", [0.0, 15.0])
+def test_a_dark_leaf_that_hangs_on_to_the_arm_is_not_part_of_it(bend_deg):
+    picture = Picture(blur=0.8, noise=3.0, tip=(124.3, 121.6), marker=(38.7, 180.0))
+    turn = np.radians(picture.angle_deg + bend_deg)
+    leaf_end = (124.3 - 50.0 * np.cos(turn), 121.6 + 50.0 * np.sin(turn))
+    leaf = Picture(tip=leaf_end, angle_deg=picture.angle_deg + bend_deg, length=50.0, width=2.5, marker=GONE, blur=0.8)
+    seen = sight(np.minimum(picture.drawn(), leaf.drawn()))
+    assert np.degrees(seen.angle) == pytest.approx(picture.angle_deg, abs=ANGLE_DEG)
+    error_mm = 1e3 * seen.from_marker(ARM_MM * 1e-3) - picture.tip_from_marker_mm()
+    assert np.linalg.norm(error_mm) < POSITION * ARM_MM
+
+
 GONE = (-500.0, -500.0)
 REFUSED = {
     "no marker": (Picture(marker=GONE), "no marker"),
