@@ -122,8 +122,8 @@ def test_noise_of_a_stand_leaves_the_clean_held_out_error_small(name):
     hinge = preset(name)
     box, moment = default_box(hinge), moment_at(hinge, np.radians(30.0))
     held_out = held_out_states(hinge, box, 300)
-    for count in (100, 600):
-        for seed in (1, 2):
+    for count in (60, 600):
+        for seed in (0, 1, 2):
             data = noisy(fit_states(hinge, box, count), moment, seed)
             fit = fit_noisy(data, hinge.length, box=box)
             tip, torque = rms(fit.potential, held_out, moment)
@@ -206,7 +206,7 @@ def test_a_simple_model_tells_its_own_error_from_the_noise():
     data = noisy(stand_states(leaf_spring(), 40), 0.045, 5)
     fit = fit_measured(data, LENGTH, "torsion")
     assert fit.noise is not None
-    assert fit.noise[0] == pytest.approx(TIP_NOISE, rel=0.25)
+    assert fit.noise[0] == pytest.approx(TIP_NOISE, rel=0.2)
     assert fit.joint.errors["torsion"].tip_rms > 10 * fit.noise[0]
 
 
