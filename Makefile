@@ -41,6 +41,7 @@ train: $(STAMP)
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/substep.py
+	$(BIN)/python benchmarks/flexure.py
 
 clean:
 	rm -rf $(VENV) build *.egg-info demo runs

@@ -177,7 +177,7 @@ def test_step_into_a_file_is_refused(cli, tmp_path):
 def tips():
     seen = []
     with TensegrityRobot(dt=2e-3) as robot:
-        table = tip_table(robot, faces=[0], progress=lambda done, total: seen.append((done, total)))
+        table = tip_table(robot, (0.3,), [0], progress=lambda done, total: seen.append((done, total)))
     assert seen == [(n, 41) for n in range(1, 42)]
     return table
 
@@ -226,7 +226,7 @@ def test_the_walker_holds_a_pull_to_its_end_and_pulls_deep_where_nothing_tips(ti
         assert first.max() > 0
         robot.step(100)
         np.testing.assert_array_equal(walker.angles(robot, np.array([-1.0, 0.0])), first)
-        robot.time += 3.0
+        robot.time += 2.0
         assert walker.angles(robot, np.array([1.0, 0.0])).max() == 0  # the release
         robot.reset(7)
         walker.restart()
@@ -234,7 +234,7 @@ def test_the_walker_holds_a_pull_to_its_end_and_pulls_deep_where_nothing_tips(ti
 
 
 def test_all_faces_writes_the_walkers_table(tips, cli, tmp_path, monkeypatch):
-    monkeypatch.setattr("tensegym.commands.step.tip_table", lambda robot, depth, progress: tips)  # of one face: quicker
+    monkeypatch.setattr("tensegym.commands.step.tip_table", lambda robot, depths, progress: tips)  # of one face: quicker
     status, text, _ = cli("step", "--all-faces", "--out", tmp_path, "--json")
     assert status == 0
     moved = sum(tip.tipped for tip in tips)

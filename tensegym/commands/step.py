@@ -37,7 +37,8 @@ class Step:
     depth: float = 0.3
     """Part of the stiff cables' rest length that is wound in."""
     all_faces: bool = False
-    """Instead: try every choice of one to three drives from every face; writes tips.json, the walker's table."""
+    """Instead: try every choice of one to three drives from every face, at --depth and at the design's deepest pull;
+    writes tips.json, the walker's table."""
     design: str = "six_rod"
     """A preset (six_rod, paper) or a TOML file."""
     out: Path = Path("step")
@@ -99,7 +100,7 @@ class Step:
                 bar.total = total
                 bar.update(done - bar.n)
 
-            tips = tip_table(robot, self.depth, progress=progress)
+            tips = tip_table(robot, (self.depth, robot.design.stiff_cable.max_pull), progress=progress)
         self.out.mkdir(parents=True, exist_ok=True)
         save_table(tips, self.out / "tips.json")
         names = robot.faces.names()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -23,8 +23,8 @@ class Pull:
 
     drives: tuple[int, ...]
     depth: float
-    pull_time: float = 3.0
-    release_time: float = 2.5
+    pull_time: float = 2.0
+    release_time: float = 1.6
 
     @property
     def duration(self) -> float:
@@ -103,15 +103,16 @@ def tip_from(robot: TensegrityRobot, face: int, pull: Pull, settle: float = 0.5)
 
 
 def tip_table(
-    robot: TensegrityRobot, depth: float = 0.3, faces: Iterable[int] | None = None,
+    robot: TensegrityRobot, depths: Sequence[float] = (0.3, 0.45), faces: Iterable[int] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> list[Tip]:
-    """Try every subset of one to three drives from every face."""
+    """Try every subset of one to three drives from every face, at every depth."""
     faces = list(range(len(robot.faces.triangles)) if faces is None else faces)
-    trials = [(face, drives) for face in faces for drives in subsets(len(robot.drives))]
+    trials = [Pull(drives, depth) for depth in depths for drives in subsets(len(robot.drives))]
     tips = []
-    for done, (face, drives) in enumerate(trials):
-        tips.append(tip_from(robot, face, Pull(drives, depth)))
-        if progress:
-            progress(done + 1, len(trials))
+    for face in faces:
+        for pull in trials:
+            tips.append(tip_from(robot, face, pull))
+            if progress:
+                progress(len(tips), len(faces) * len(trials))
     return tips
