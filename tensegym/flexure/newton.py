@@ -52,7 +52,8 @@ def newton(mesh, mem, mode, ask):
         negative, last = factor(matrix)
         forward(matrix, right)
         if mode == ROTATION:
-            step[:] = 0.0
+            for i in range(size):
+                step[i] = 0.0
             step[size - 3], step[size - 2], step[size - 1] = ask[WX], ask[WY], ask[WM]
             forward(matrix, step)
             delta = ask[THETA] - turn
@@ -80,7 +81,7 @@ def newton(mesh, mem, mode, ask):
                     mem.step[end, 1] = right[k + 1] + (c * x - s * y) * right[k + 2]
                     mem.step[end, 2] = right[k + 2]
                 else:
-                    mem.step[end, :] = 0.0
+                    mem.step[end, 0], mem.step[end, 1], mem.step[end, 2] = 0.0, 0.0, 0.0
             inside = recover(mem.nodes[first:], mem.axial[first:], real, count, a == 0, mem.strains[first:],
                              mem.back[first:], mem.step[0], mem.step[1])  # fmt: skip
             largest = max(largest, inside)
@@ -193,8 +194,8 @@ def sweep(mesh, mode, asks, from_rest, keep_nodes):
         ask = asks[i]
         if from_rest or (i > 0 and status[i - 1] != CONVERGED) or i == 0:
             copy_state(rest, mem)
-            start[:] = 0.0
-            start[4:] = ask[4:]
+            for j in range(8):
+                start[j] = ask[j] if j >= WX else 0.0
             known = 0
         state, done = FAILED, 0.0
         multiplier, free = 0.0, False
@@ -213,23 +214,31 @@ def sweep(mesh, mode, asks, from_rest, keep_nodes):
         status[i], stable[i] = state, free
         results[i, 7] = done
         if keep_nodes:
-            nodes[i] = mem.nodes
+            for k in range(len(mem.nodes)):
+                for j in range(3):
+                    nodes[i, k, j] = mem.nodes[k, j]
         if state != CONVERGED:
             continue
         if not from_rest:
             copy_state(mem, history[i % 3])
             known = min(known + 1, 3)
-            start[:] = ask
+            for j in range(8):
+                start[j] = ask[j]
         results[i, 0], results[i, 1], results[i, 2] = mem.poses[tip, 2], mem.poses[tip, 0], mem.poses[tip, 1]
-        results[i, 3:7] = mem.held
+        for j in range(4):
+            results[i, 3 + j] = mem.held[j]
     return results, status, stable, nodes
 
 
 @njit(**OPTIONS)
 def extrapolate(mesh, oldest, older, last, mem):
     """Quadratic extrapolation over three even steps, into ``mem``."""
-    mem.poses[:] = 3 * last.poses - 3 * older.poses + oldest.poses
-    mem.nodes[:] = 3 * last.nodes - 3 * older.nodes + oldest.nodes
-    mem.axial[:] = 3 * last.axial - 3 * older.axial + oldest.axial
+    for i in range(len(mem.poses)):
+        for j in range(3):
+            mem.poses[i, j] = 3 * (last.poses[i, j] - older.poses[i, j]) + oldest.poses[i, j]
+    for i in range(len(mem.nodes)):
+        mem.axial[i] = 3 * (last.axial[i] - older.axial[i]) + oldest.axial[i]
+        for j in range(3):
+            mem.nodes[i, j] = 3 * (last.nodes[i, j] - older.nodes[i, j]) + oldest.nodes[i, j]
     for m in range(len(mesh.ends)):
         place_ends(mesh, mem, m)
