@@ -152,12 +152,3 @@ def test_batches_agree_with_single_calls():
     assert BASE.stiffnesses(poses) == pytest.approx(np.array([BASE.stiffness(*p) for p in poses]))
     with pytest.raises(FlexureError, match="poses has shape"):
         BASE.wrenches(poses[:, :2])
-
-
-def test_speed_of_a_sweep(joints):
-    """40 times faster than the FEM's; the benchmark prints the ratios, this guards the order."""
-    from tensegym.flexure.timing import sweep_times
-
-    for joint in joints.values():
-        times = sweep_times(joint)
-        assert times.fem / times.potential > 40
