@@ -14,7 +14,7 @@ import shutil
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
@@ -69,7 +69,7 @@ class Train:
     seed: int = 0
     """Seed of the networks, the episodes and the exploration."""
     steps: int | None = None
-    """Environment steps in all, in place of the config's."""
+    """Environment steps in all, in place of the config's; with --resume, a longer schedule to go on with."""
     resume: bool = False
     """Go on from the folder's last checkpoint, with its own config and seed."""
 
@@ -78,6 +78,8 @@ class Train:
         if self.resume:
             state = _resume(out)
             config, seed = load_config(str(out / "config.yaml")), state["seed"]
+            if self.steps is not None:
+                config = _extended(config, self.steps, out, state)
         else:
             if out.exists() and not out.is_dir():
                 raise InputError(f"--out {out} is a file; give a folder")
@@ -104,6 +106,16 @@ class Train:
                 "last": {k: float(v) for k, v in rows[-1].items()} if rows else {}}  # fmt: skip
         text = table(["run", "steps", "best median speed L/s"], [[str(out), model_steps, best]])
         return Report(text, data)
+
+
+def _extended(config: TrainConfig, steps: int, out: Path, state: dict[str, Any]) -> TrainConfig:
+    """The same training with a longer schedule; the run's state keeps the ends of its stages."""
+    if steps <= state["steps"]:
+        raise InputError(f"steps = {steps} must be above the {state['steps']} that {out} stands at")
+    state["stages"] = [*state.get("stages", [config.steps]), steps]
+    config = replace(config, steps=steps)
+    (out / "config.yaml").write_text(yaml.safe_dump(config.as_dict(), sort_keys=False))
+    return config
 
 
 def _versions() -> dict[str, str]:

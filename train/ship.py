@@ -48,10 +48,10 @@ class Ship:
         model.policy.optimizer = type(model.policy.optimizer)(model.policy.parameters(), lr=model.learning_rate)
         model.save(out / "model.zip")
         commit = json.loads((self.run / "versions.json").read_text())["commit"]
-        (out / "COMMAND").write_text(
-            f"tensegym train --config {self.name} --seed {state['seed']}   # at commit {commit}, "
-            f"{state['steps']} steps in {state['seconds'] / 3600:.2f} h\n"
-        )
+        lines = [f"tensegym train --config {self.name} --seed {state['seed']}"]
+        lines += [f"tensegym train --resume --out {self.run} --steps {end}" for end in state.get("stages", [])[1:]]
+        done = f"# at commit {commit}; {state['steps']} steps in {state['seconds'] / 3600:.2f} h\n"
+        (out / "COMMAND").write_text("\n".join([*lines, done]))
         return out
 
 

@@ -17,6 +17,10 @@ import torch
 import yaml
 from stable_baselines3 import PPO
 
+from tensegym.envs.rolling import RollingEnv
+from tensegym.errors import InputError
+from tensegym.train.controllers import load_policy
+from tensegym.train.ship import Ship
 from tests.conftest import assert_refused
 
 STEPS = 20  # a chunk of the tiny training
@@ -120,6 +124,33 @@ def test_a_kill_before_the_first_checkpoint_starts_again(tiny_run, tmp_path, cli
     (out / "state.json").write_text(json.dumps({"seed": 7, "steps": 0, "seconds": 0.0}))
     assert cli("train", "--resume", "--out", out)[0] == 0
     assert_same(out, tiny_run)
+
+
+def test_a_finished_run_goes_on_with_a_longer_schedule_and_says_so(tiny_run, tmp_path, cli, monkeypatch):
+    run = tmp_path / "longer"
+    shutil.copytree(tiny_run, run)
+    assert_refused(cli("train", "--resume", "--out", run, "--steps", 3 * STEPS), "steps = 60", "above the 60")
+    assert cli("train", "--resume", "--out", run, "--steps", 4 * STEPS)[0] == 0
+    assert yaml.safe_load((run / "config.yaml").read_text())["steps"] == 4 * STEPS
+    state = json.loads((run / "state.json").read_text())
+    assert (state["steps"], state["stages"]) == (4 * STEPS, [3 * STEPS, 4 * STEPS])
+    monkeypatch.setattr("tensegym.train.controllers.shipped", lambda name: tmp_path / name)
+    shipped = Ship(run, "tiny")()
+    first, second, _ = (shipped / "COMMAND").read_text().splitlines()
+    assert first == "tensegym train --config tiny --seed 7"
+    assert second.endswith(f"--steps {4 * STEPS}")
+    env = RollingEnv(**yaml.safe_load((shipped / "config.yaml").read_text())["env"])
+    observation, _ = env.reset(seed=0)
+    np.testing.assert_array_equal(load_policy(shipped, env)(observation), load_policy(run, env)(observation))
+    env.close()
+
+
+def test_an_unfinished_run_is_not_shipped(tiny_run, tmp_path):
+    run = tmp_path / "cut"
+    shutil.copytree(tiny_run, run)
+    (run / "state.json").write_text(json.dumps({"seed": 7, "steps": STEPS, "seconds": 1.0}))
+    with pytest.raises(InputError, match="stands at 20 of 60 steps"):
+        Ship(run, "tiny")()
 
 
 def test_another_seed_learns_something_else(tiny_run, tiny_config, tmp_path, cli):
