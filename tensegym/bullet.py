@@ -34,6 +34,7 @@ with _quiet_stderr():  # it greets on stderr, where a command's error is to stan
     import pybullet
 
 _ROBOT_GROUP, _GROUND_GROUP = 1, 2
+FIXED, REVOLUTE, PRISMATIC = range(3)  # kinds of joints
 
 
 def _disconnect(client: int) -> None:
@@ -135,6 +136,14 @@ class World:
             [sum(pybullet.getBaseVelocity(body, physicsClientId=self.client), ()) for body in self.bodies]
         )
 
+    def set_gravity(self, gravity: Sequence[float]) -> None:
+        """Gravity (3,) in the world [m/s^2], in place of the one straight down."""
+        pybullet.setGravity(*gravity, physicsClientId=self.client)
+
+    def advance(self) -> None:
+        """One time step under the forces already given."""
+        pybullet.stepSimulation(self.client)
+
     # -- state and pictures ---------------------------------------------------------------------------------------
 
     def save(self) -> int:
@@ -172,6 +181,91 @@ class World:
     def look_at(self, target: FloatArray, distance: float) -> None:
         """Move the window's camera."""
         pybullet.resetDebugVisualizerCamera(distance, 45, -25, target.tolist(), physicsClientId=self.client)
+
+
+class Articulated:
+    """A body of many links in a world, its joints free: motors and the engine's damping off, no sleeping.
+
+    Rows of per-link arrays are the base, then the links in the engine's order; columns of per-joint arrays are the
+    joints that move, in that order. Revolute and prismatic joints only.
+    """
+
+    def __init__(self, world: World, urdf: Path, pose: Sequence[float], friction: float, fixed_base: bool) -> None:
+        self.world, self.client = world, world.client
+        try:
+            self.body = body = pybullet.loadURDF(
+                str(urdf), list(pose[:3]), list(pose[3:]), useFixedBase=fixed_base,
+                flags=pybullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=self.client,
+            )  # fmt: skip
+        except pybullet.error as error:
+            raise SimulationError(f"PyBullet cannot load {urdf.name}: {error}") from error
+        count = pybullet.getNumJoints(body, physicsClientId=self.client)
+        self.joint_info = [pybullet.getJointInfo(body, i, physicsClientId=self.client) for i in range(count)]
+        for link in range(-1, count):
+            # the engine clamps joint speeds at 100 by default, which would hide a divergence
+            pybullet.changeDynamics(
+                body, link, linearDamping=0, angularDamping=0, jointDamping=0, maxJointVelocity=1e6, restitution=0,
+                lateralFriction=math.sqrt(friction), physicsClientId=self.client,
+            )  # fmt: skip
+            pybullet.setCollisionFilterGroupMask(
+                body, link, _ROBOT_GROUP, _ROBOT_GROUP | _GROUND_GROUP, physicsClientId=self.client
+            )
+        kinds = {pybullet.JOINT_REVOLUTE: REVOLUTE, pybullet.JOINT_PRISMATIC: PRISMATIC, pybullet.JOINT_FIXED: FIXED}
+        for info in self.joint_info:
+            if info[2] not in kinds:
+                raise SimulationError(f"joint {info[1].decode()!r} is neither revolute, prismatic nor fixed")
+        self.kinds = [kinds[info[2]] for info in self.joint_info]
+        self.moving = [i for i, kind in enumerate(self.kinds) if kind != FIXED]
+        pybullet.setJointMotorControlArray(
+            body, self.moving, pybullet.VELOCITY_CONTROL, forces=[0.0] * len(self.moving), physicsClientId=self.client
+        )
+
+    def remove(self) -> None:
+        """Take the body out of the world."""
+        pybullet.removeBody(self.body, physicsClientId=self.client)
+
+    def inertias(self) -> list[tuple[float, Sequence[float], Sequence[float], Sequence[float]]]:
+        """Mass, principal moments, centre and principal axes (xyzw) in the link's frame of every link."""
+        rows = [pybullet.getDynamicsInfo(self.body, link, physicsClientId=self.client)
+                for link in range(-1, len(self.kinds))]  # fmt: skip
+        return [(row[0], row[2], row[3], row[4]) for row in rows]
+
+    def link_frames(self) -> list[tuple[Sequence[float], Sequence[float]]]:
+        """Position and quaternion of the URDF frame of every link but the base, in the world, now."""
+        states = [pybullet.getLinkState(self.body, i, computeForwardKinematics=1, physicsClientId=self.client)
+                  for i in range(len(self.kinds))]  # fmt: skip
+        return [(state[4], state[5]) for state in states]
+
+    def place(self, pose: Sequence[float], twist: Sequence[float], joints: FloatArray, rates: FloatArray) -> None:
+        """Base centre's pose (7,) and velocity (6,) linear, angular in the world; joint positions and rates."""
+        body, client = self.body, self.client
+        pybullet.resetBasePositionAndOrientation(body, list(pose[:3]), list(pose[3:]), physicsClientId=client)
+        pybullet.resetBaseVelocity(body, list(twist[:3]), list(twist[3:]), physicsClientId=client)
+        for joint, value, rate in zip(self.moving, joints.tolist(), rates.tolist(), strict=True):
+            pybullet.resetJointState(body, joint, value, rate, physicsClientId=client)
+
+    def read_joints(self, positions: FloatArray, rates: FloatArray) -> None:
+        """Write every moving joint's position and rate."""
+        states = pybullet.getJointStates(self.body, self.moving, self.client)
+        positions[:] = [state[0] for state in states]
+        rates[:] = [state[1] for state in states]
+
+    def read_base(self, pose: FloatArray, twist: FloatArray) -> None:
+        """Write the base centre's pose (7,) and velocity (6,) linear, angular, in the world."""
+        position, orientation = pybullet.getBasePositionAndOrientation(self.body, self.client)
+        linear, angular = pybullet.getBaseVelocity(self.body, self.client)
+        pose[:3], pose[3:], twist[:3], twist[3:] = position, orientation, linear, angular
+
+    def push_joints(self, torques: list[float]) -> None:
+        """Force or torque on every moving joint for the next step."""
+        pybullet.setJointMotorControlArray(
+            self.body, self.moving, pybullet.TORQUE_CONTROL, forces=torques, physicsClientId=self.client
+        )
+
+    def push_link(self, link: int, force: list[float], point: list[float], torque: list[float]) -> None:
+        """Force at a point and torque, all in the world, on a link (-1 the base) for the next step."""
+        pybullet.applyExternalForce(self.body, link, force, point, 2, self.client)
+        pybullet.applyExternalTorque(self.body, link, torque, 2, self.client)
 
 
 def packaged_urdf(name: str) -> Path | None:
