@@ -5,5 +5,6 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "curves": ("tensegym.flexure.commands.curves:Curves", "torque against angle, drift, stiffness diagrams: PNG, CSV"),
     "fit": ("tensegym.flexure.commands.fit:Fit", "fit a joint model to a hinge or to measured data"),
     "track": ("tensegym.flexure.commands.track:Track", "pictures of a stand in, angle and position out, as CSV"),
+    "stand": ("tensegym.flexure.commands.stand:Stand", "the paper's test stand in PyBullet: pull, track, fit, let go"),
     "solve": ("tensegym.flexure.commands.solve:Solve", "loads in, poses out, by any of the models"),
 }

@@ -189,6 +189,11 @@ class FlexibleRobot:
         return {names[0]: float(x - flexure.spring.length), names[1]: float(y), name: float(theta)}
 
     @property
+    def rates(self) -> FloatArray:
+        """(j,) joint rates as the engine has them, half a step before the positions."""
+        return self._speeds[self.tree.first :]
+
+    @property
     def velocities(self) -> FloatArray:
         """(n,) base velocity (6, floating only) and joint rates at the time of the positions."""
         if self.scheme == "explicit":

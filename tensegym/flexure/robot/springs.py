@@ -48,7 +48,7 @@ def spring_row(spring: Spring | StiffnessDiagram) -> tuple[int, list[float]]:
     if isinstance(spring, TorsionSpring):
         return kernel.TORSION, [spring.length, spring.fraction * spring.length, spring.stiffness, 0.0, 0.0]
     raise FlexureError(
-        f"a {type(spring).__name__} is no gradient of an energy and can feed a robot; take potential, planar or torsion"
+        f"a {type(spring).__name__} is no gradient of an energy: take potential, planar or torsion"
     )
 
 
