@@ -26,6 +26,7 @@ import numpy as np
 import pybullet
 from numba import njit
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from tensegym.bullet import packaged_urdf
 from tensegym.errors import SimulationError
@@ -34,7 +35,7 @@ from tensegym.flexure.potential_kernel import stiffness, wrench
 from tensegym.flexure.presets import PAPER_HINGES, preset
 from tensegym.flexure.robot.flexible_robot import FlexibleRobot
 from tensegym.flexure.robot.flexure_joint import FlexureJoint
-from tensegym.flexure.robot.stand import UPRIGHT, arm_state
+from tensegym.flexure.robot.stand import ARM, UPRIGHT, arm_state, pull
 from tensegym.report import table
 
 MASS, CENTRE, INERTIA = 0.03, 0.06, 3.7e-5  # of the stand's arm: kg, m beyond the tip, kg m^2 about the centre
@@ -186,7 +187,8 @@ def design_rows(joint: Joint) -> list[dict]:
     return rows
 
 
-def exudyn_swing(joint: Joint, dt: float, seconds: float, modified: bool, elements: int = 8) -> tuple[np.ndarray, float]:
+def exudyn_swing(joint: Joint, dt: float, seconds: float, modified: bool, elements: int = 8
+                 ) -> tuple[np.ndarray, float]:  # fmt: skip
     """Theta at every step and CPU seconds of the dynamic solution: the arm on light ANCF cables, held at 20 deg by the
     same force at its end, let go; implicit trapezoidal rule."""
     import exudyn as exu
@@ -256,6 +258,23 @@ def exudyn_rows(joint: Joint) -> list[dict]:
     return rows
 
 
+def static_rows(joint: Joint, name: str) -> list[dict]:
+    """The stand pulled to 30 places over +-30 deg against the model's own solution at the dynamometer's force."""
+    model, worst = joint.models["potential"], np.zeros(2)
+    pulled = pull(joint, 30, max_angle=0.999 * joint.box.max_angle)
+    for (x, y, theta), force in zip(pulled.poses, pulled.force, strict=True):
+        loads = np.array([[0.0, force]])
+
+        def miss(angle: float, loads: np.ndarray = loads) -> float:
+            return float(model.poses(np.array([angle]), loads).moment[0] - ARM * loads[0, 1] * np.cos(angle))
+
+        exact = brentq(miss, -joint.box.max_angle, joint.box.max_angle, xtol=1e-15)
+        tip = model.poses(np.array([exact]), loads).tip[0]
+        worst = np.maximum(worst, [abs(theta - exact), np.hypot(x - tip[0], y - tip[1])])
+    return [{"hinge": name, "from_deg": float(np.degrees(pulled.poses[0, 2])),
+             "to_deg": float(np.degrees(pulled.poses[-1, 2])), "theta_rad": worst[0], "tip_m": worst[1]}]  # fmt: skip
+
+
 def ten_seconds(joint: Joint, name: str) -> list[dict]:
     """Energy over 10 s without damping: its largest excess, and the loss a period by the means of the first and last
     second."""
@@ -296,6 +315,8 @@ def main() -> None:
     swing(leaf, 1e-3, "trapezoid", 0.01)  # compiles
     tables = {"work-precision: error is RMS over 20 deg in 1 s":
               [row for name in ("leaf-spring", "x-hinge") for row in work_precision(joints[name], name)],
+              "static: largest difference to the model's own solution, 30 places":
+              [row for name, joint in joints.items() for row in static_rows(joint, name)],
               "10 s without damping": [row for name, joint in joints.items() for row in ten_seconds(joint, name)],
               "designs, gravity along the hinge's axis": design_rows(leaf)}  # fmt: skip
     try:

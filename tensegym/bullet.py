@@ -202,11 +202,11 @@ class Articulated:
         count = pybullet.getNumJoints(body, physicsClientId=self.client)
         self.joint_info = [pybullet.getJointInfo(body, i, physicsClientId=self.client) for i in range(count)]
         for link in range(-1, count):
-            # the engine clamps joint speeds at 100 by default, which would hide a divergence
-            pybullet.changeDynamics(
-                body, link, linearDamping=0, angularDamping=0, jointDamping=0, maxJointVelocity=1e6, restitution=0,
-                lateralFriction=math.sqrt(friction), physicsClientId=self.client,
-            )  # fmt: skip
+            # one call each: on a link but the base the engine drops what stands beside a damping or a speed limit;
+            # and it clamps joint speeds at 100 by default, which would hide a divergence
+            for change in ({"linearDamping": 0, "angularDamping": 0}, {"maxJointVelocity": 1e6}, {"jointDamping": 0},
+                           {"restitution": 0, "lateralFriction": math.sqrt(friction)}):  # fmt: skip
+                pybullet.changeDynamics(body, link, **change, physicsClientId=self.client)
             pybullet.setCollisionFilterGroupMask(
                 body, link, _ROBOT_GROUP, _ROBOT_GROUP | _GROUND_GROUP, physicsClientId=self.client
             )
@@ -255,6 +255,14 @@ class Articulated:
         position, orientation = pybullet.getBasePositionAndOrientation(self.body, self.client)
         linear, angular = pybullet.getBaseVelocity(self.body, self.client)
         pose[:3], pose[3:], twist[:3], twist[3:] = position, orientation, linear, angular
+
+    def near(self, other: int, within: float) -> list[tuple[Any, ...]]:
+        """PyBullet's rows of the points nearer than ``within`` [m] to another body."""
+        return list(pybullet.getClosestPoints(self.body, other, within, physicsClientId=self.client))
+
+    def contact_forces(self) -> list[tuple[Any, ...]]:
+        """PyBullet's contact rows of the last step."""
+        return list(pybullet.getContactPoints(self.body, physicsClientId=self.client))
 
     def push_joints(self, torques: list[float]) -> None:
         """Force or torque on every moving joint for the next step."""

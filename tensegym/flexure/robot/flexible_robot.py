@@ -16,6 +16,7 @@ from scipy.spatial.transform import Rotation
 from ...bullet import Articulated, World
 from ...errors import FlexureError, SimulationError
 from ..states import FloatArray
+from . import contacts
 from . import step_kernel as kernel
 from .flexure_joint import FlexureJoint, Outside
 from .springs import Springs, spring_table
@@ -170,14 +171,15 @@ class FlexibleRobot:
 
     def _stagger(self) -> None:
         """Set the engine's velocities half a step back, as its leapfrog and the trapezoidal step count them."""
-        asked = self._speeds.copy()
+        asked, first = self._speeds.copy(), self.tree.first
+        assert self.body is not None
+        # placed before it is solved for: contacts are looked for where the engine has the body
+        self.body.place(self._base.tolist(), (0.0,) * 6, self.positions, np.zeros(len(self.positions)))
         if self.scheme != "explicit":
             for _ in range(3):  # the springs' own share cancels: it converges at once but for the velocity terms
                 self._solve()
                 self._speeds[:] = asked - 0.5 * self.dt * self._acceleration
-        first = self.tree.first
         twist = self._speeds[:6] if first else np.zeros(6)
-        assert self.body is not None
         self.body.place(self._base.tolist(), twist.tolist(), self.positions, self._speeds[first:])
 
     def place_tip(self, name: str, pose: ArrayLike) -> dict[str, float]:
@@ -260,10 +262,22 @@ class FlexibleRobot:
             place = kernel.add_load(self.tree, self._base, self.positions, row, force, np.array(load.point, float),
                                     torque, known)  # fmt: skip
             pushes.append((row, force.tolist(), place.tolist(), torque.tolist()))
+        assert self.body is not None
+        points = [] if self.world.ground is None else contacts.candidates(
+            self.body, self.world.ground, self.tree, self._base, self.positions, len(known)
+        )  # fmt: skip
+        weight = contacts.WEIGHT * float(self.tree.mass.sum())
         kind, most = _SCHEMES[self.scheme]
-        done = kernel.step_forces(self.tree, self.springs, self._base, self.positions, self._speeds, known, self._drag,
-                                  self.gravity, self.dt, kind, most, self._acceleration, self._force,
-                                  self._margins)  # fmt: skip
+        for _ in range(contacts.PASSES):
+            hold, stop = contacts.holds(points, self._speeds, self.dt, weight)
+            done = kernel.step_forces(
+                self.tree, self.springs, self._base, self.positions, self._speeds, known, self._drag, hold, stop,
+                self.gravity, self.dt, kind, most, self._acceleration, self._force, self._margins,
+            )  # fmt: skip
+            if done < 0 or not contacts.revise(
+                points, self._speeds, self._acceleration, self.dt, weight, self.friction
+            ):  # fmt: skip
+                break
         if done < 0:
             raise SimulationError(f"no forces found for the step at t = {self.time:.4g} s; take a shorter time step")
         return pushes

@@ -3,12 +3,17 @@
 PyBullet steps v' = v + dt a, q' = q + dt v' from forces at the state it has: leapfrog, with v half a step behind q. It
 is unstable where a spring's frequency w passes 2/dt, and evaluates velocity terms half a step early. Here the force is
 
-    f = -1/4 (g(q - dt v) + 2 g(q) + g(q + dt v + dt^2 a)) - B (v + dt a / 2),     g the gradient of the springs' energy
+    f = -1/4 (g(q - dt v) + 2 g(q) + g(q + dt v + dt^2 a)) - B (v + dt a),     g the gradient of the springs' energy
     M(q) a + h(q, v + dt a / 2) = f + known forces
 
 the average acceleration method (Newmark 1959, beta = 1/4, gamma = 1/2; the trapezoidal rule): second order, symmetric
 in time, without numerical damping, and stable for any linear spring. a is found by Newton's method with
-the matrix M + dt^2/4 K + dt/2 B. Contact forces are not in it; the engine adds them after.
+the matrix M + dt^2/4 K + dt B. Damping takes the velocity at the end of the step: at its middle it would not see the
+fastest modes, which alternate from step to step and would ring on; the price is an inertia of dt/2 B.
+
+The engine solves for contact forces after that. A stiff spring would take a foot for free in the step that stops it,
+and be strained by the whole way of the rest of the robot in that step; so contacts are foreseen (contacts.py): a term
+-(H a + stop) with H = rho J^T J, rho far over the robot's mass, stands for their force in the equation of a.
 """
 
 from __future__ import annotations
@@ -25,11 +30,12 @@ MOST_ITERATIONS, TOLERANCE = 40, 1e-13  # of Newton; change of a coordinate in o
 
 
 @njit(**OPTIONS)
-def step_forces(tree, springs, base, q, v, known, drag, gravity, dt, scheme, most, a, out, margins):
+def step_forces(tree, springs, base, q, v, known, drag, hold, stop, gravity, dt, scheme, most, a, out, margins):
     """Generalised forces out (n,) for PyBullet's next step, and the acceleration a (n,) it will give.
 
     base (7,), q (j,), v (n,) as the engine has them; known (n,) the other forces, which the caller gives to the engine;
-    drag (j,) viscous damping of the joints; ``most`` Newton iterations; margins (f,) see spring_kernel.margin.
+    drag (j,) viscous damping of the joints; hold (n, n) and stop (n,) as above; ``most`` Newton iterations; margins
+    (f,) see spring_kernel.margin.
     Returns the iterations, or -1 when they do not converge.
     """
     n, size, first = len(v), len(tree.parent), tree.first
@@ -47,7 +53,7 @@ def step_forces(tree, springs, base, q, v, known, drag, gravity, dt, scheme, mos
     _margins(springs, q, margins)
     if scheme == EXPLICIT:
         out[:] = -now - loss @ v
-        a[:] = np.linalg.solve(mass, known + out - early)
+        a[:] = np.linalg.solve(mass + hold, known + out - early - stop)
         return 1
     all_springs(springs, q - dt * v[first:], first, other, stiffness)
     past = 0.25 * other + 0.5 * now
@@ -56,18 +62,18 @@ def step_forces(tree, springs, base, q, v, known, drag, gravity, dt, scheme, mos
         mean = v + 0.5 * dt * a
         bias(tree, mean, gravity, turns, origins, centres, axes, middle)
         all_springs(springs, q + dt * (v[first:] + dt * a[first:]), first, other, stiffness)
-        out[:] = -past - 0.25 * other - loss @ mean
-        miss = out + known - middle - mass @ a
+        out[:] = -past - 0.25 * other - loss @ (v + dt * a)
+        miss = out + known - middle - mass @ a - hold @ a - stop
         size_of = np.sqrt((miss * miss).sum())
         if size_of > 2 * last and iteration < most // 2:  # the last change overshot: half of it
             change *= 0.5
             a -= change
             continue
         last = size_of
-        change = np.linalg.solve(mass + 0.25 * dt * dt * stiffness + 0.5 * dt * loss, miss)
+        change = np.linalg.solve(mass + hold + 0.25 * dt * dt * stiffness + dt * loss, miss)
         a += change
         # to the force of the new a, to first order: what is left is of the square of the change
-        out -= 0.25 * dt * dt * stiffness @ change + 0.5 * dt * loss @ change
+        out -= 0.25 * dt * dt * stiffness @ change + dt * loss @ change
         size_of = dt * dt * np.abs(change).max()
         if not np.isfinite(size_of):
             return -1

@@ -7,6 +7,7 @@ The links between have no mass. At zero every joint leaves the child where the f
 
 from __future__ import annotations
 
+import warnings
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from pathlib import Path
@@ -131,7 +132,10 @@ def _joint(name: str, kind: str, parent: str, child: str, place: FloatArray, tur
     joint = ET.Element("joint", name=name, type=kind)
     ET.SubElement(joint, "parent", link=parent)
     ET.SubElement(joint, "child", link=child)
-    ET.SubElement(joint, "origin", xyz=_text(place), rpy=_text(turn.as_euler("xyz")))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # at gimbal lock any of the angles that make the turn will do
+        angles = turn.as_euler("xyz")
+    ET.SubElement(joint, "origin", xyz=_text(place), rpy=_text(angles))
     return joint
 
 
