@@ -93,7 +93,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         if reward and set(reward) - {f.name for f in fields(RewardWeights)}:
             allowed = ", ".join(f.name for f in fields(RewardWeights))
             raise DesignError(f"unknown reward weight in {reward!r}; allowed: {allowed}")
-        for name, value, low, high in (("dt", dt, LEAST_TIME_STEP, LARGEST_TIME_STEP), ("control_period", control_period, 1e-6, 60.0),
+        for name, value, low, high in (("dt", dt, LEAST_TIME_STEP, LARGEST_TIME_STEP),
+                                       ("control_period", control_period, 1e-6, 60.0),
                                        ("settle", settle, 0.0, 60.0)):  # fmt: skip
             if not (isinstance(value, int | float) and low <= value <= high):
                 raise DesignError(f"{name} = {value!r} is outside [{low:g}, {high:g}] s")

@@ -234,7 +234,7 @@ def test_the_walker_holds_a_pull_to_its_end_and_pulls_deep_where_nothing_tips(ti
 
 
 def test_all_faces_writes_the_walkers_table(tips, cli, tmp_path, monkeypatch):
-    monkeypatch.setattr("tensegym.commands.step.tip_table", lambda robot, depths, progress: tips)  # of one face: quicker
+    monkeypatch.setattr("tensegym.commands.step.tip_table", lambda robot, depths, progress: tips)  # of one face
     status, text, _ = cli("step", "--all-faces", "--out", tmp_path, "--json")
     assert status == 0
     moved = sum(tip.tipped for tip in tips)
