@@ -42,15 +42,15 @@ def test_the_grippers_fingers_give_alike_and_as_their_springs_say():
     with load_robot(packaged_urdf("flexure_gripper.toml"), fixed_base=True, gravity=(0, 0, 0)) as robot:
         left, right = robot.flexures["left"], robot.flexures["right"]
         tip = (0.0, 0.0, 0.07)
-        robot.loads = [Load("left_finger", (-0.3, 0, 0), tip), Load("right_finger", (0.3, 0, 0), tip)]
+        robot.loads = [Load("left_finger", (-0.2, 0, 0), tip), Load("right_finger", (0.2, 0, 0), tip)]
         robot.step(4000)
         assert np.abs(robot.velocities).max() < 1e-3
         np.testing.assert_allclose(left.pose * [1, -1, -1], right.pose, atol=1e-6)
         for flexure, name, sign in ((left, "left_finger", -1), (right, "right_finger", 1)):
             # hinge axes: x down the finger (world z), y to the right (world x); the joint's origin is half a leaf up
-            assert flexure.wrench[1] == pytest.approx(sign * 0.3, abs=1e-3)
+            assert flexure.wrench[1] == pytest.approx(sign * 0.2, abs=1e-3)
             assert flexure.wrench[0] == pytest.approx(0.0, abs=2e-3)
             theta = flexure.pose[2]
             lever = 0.05 * np.cos(theta)  # from the leaf's end, 20 mm below the joint, to the load
-            assert flexure.wrench[2] == pytest.approx(sign * 0.3 * lever, rel=5e-3)
+            assert flexure.wrench[2] == pytest.approx(sign * 0.2 * lever, rel=5e-3)
             assert name in robot.links
