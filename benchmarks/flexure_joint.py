@@ -27,6 +27,7 @@ import pybullet
 from numba import njit
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+from scipy.spatial.transform import Rotation
 
 from tensegym.bullet import packaged_urdf
 from tensegym.errors import SimulationError
@@ -74,9 +75,13 @@ def frequency(times: np.ndarray, theta: np.ndarray) -> float:
     return float((len(zeros) - 1) / (zeros[-1] - zeros[0])) if len(zeros) > 1 else np.nan
 
 
-def swing(joint: Joint, dt: float, scheme: str, seconds: float) -> tuple[np.ndarray, float]:
-    """Theta at every step, and CPU seconds of the stepping."""
-    with FlexibleRobot(packaged_urdf("flexure_stand.urdf"), dt=dt, gravity=(0, 0, 0), pose=UPRIGHT, fixed_base=True,
+def swing(joint: Joint, dt: float, scheme: str, seconds: float, sideways: list[float] | None = None
+          ) -> tuple[np.ndarray, float]:  # fmt: skip
+    """Theta at every step, and CPU seconds of the stepping. ``sideways``: gravity of 9.81 along the hinge's axis; the
+    list takes how far the arm's frame was out of the plane at the end [m] and how its axis points out of it [rad]."""
+    axis = Rotation.from_quat(UPRIGHT[3:]).apply([0.0, 0.0, 1.0])
+    gravity = np.zeros(3) if sideways is None else -9.81 * axis
+    with FlexibleRobot(packaged_urdf("flexure_stand.urdf"), dt=dt, gravity=gravity, pose=UPRIGHT, fixed_base=True,
                        scheme=scheme) as robot:  # fmt: skip
         flexure = FlexureJoint(robot, "hinge", joint)
         _, tip = arm_state(flexure.spring, RELEASE, joint.box.max_force)
@@ -87,7 +92,13 @@ def swing(joint: Joint, dt: float, scheme: str, seconds: float) -> tuple[np.ndar
         for _ in range(round(seconds / dt)):
             robot.step()
             theta.append(robot.positions[column])
-        return np.array(theta), time.process_time() - began
+        spent = time.process_time() - began
+        if sideways is not None:
+            # as the engine has the link, not as our own tree does
+            place, quaternion = robot.body.link_frames()[robot.links["arm"] - 1]
+            along = Rotation.from_quat(quaternion).apply([1.0, 0.0, 0.0])
+            sideways += [abs(float(axis @ place)), abs(float(axis @ along))]
+        return np.array(theta), spent
 
 
 def errors(theta: np.ndarray, dt: float, times: np.ndarray, exact: np.ndarray) -> tuple[float, float]:
@@ -167,10 +178,12 @@ def design_rows(joint: Joint) -> list[dict]:
     times, exact = reference(joint, SECONDS)
     rows = []
     for dt in (5e-4, 1e-3, 2e-3):
-        theta, spent = swing(joint, dt, "trapezoid", SECONDS)
+        out: list[float] = []
+        theta, spent = swing(joint, dt, "trapezoid", SECONDS, out)
         error, off = errors(theta, dt, times, exact)
         rows.append({"design": "a: joint in the URDF", "dt_ms": 1e3 * dt, "error": error, "frequency_error": off,
-                     "sag_mm": 0.0, "droop_mrad": 0.0, "us_a_step": 1e6 * spent * dt / SECONDS})  # fmt: skip
+                     "sag_mm": 1e3 * out[0], "droop_mrad": 1e3 * out[1],
+                     "us_a_step": 1e6 * spent * dt / SECONDS})  # fmt: skip
         body, theta_b, sag, droop = SeparateBody(joint, dt, 9.81), [RELEASE], 0.0, 0.0
         began = time.process_time()
         for k in range(round(SECONDS / dt) + 1):
