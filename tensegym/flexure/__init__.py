@@ -19,6 +19,7 @@ What stands where, from the bottom up:
     potential_fit.py     fit_potential(states, length) -> Fit; potential_residual.py: its equations and Jacobian
     certificate.py       proof of a potential on its box; passivity.py: work around closed loops
     joint.py             Joint: all models of one hinge with errors; fit_joint; joint_file.py: JSON in and out
+    buckling.py          buckling load of a rod with a hinge in it; pin.py: RodPin, the pin that stands for the hinge
     load_solver.py       where a model stands under a wrench; model_choice.py: which model is enough
     pictures.py          hinges, torque, drift, stiffness, errors
     measured.py, ...     data of an experiment and its fit; track.py: pictures of the stand

@@ -42,9 +42,14 @@ class TorsionSpring:
 def fit_torsion(states: States, length: float) -> TorsionSpring:
     """lambda by F1, then the stiffness by least squares on the moment about the pin."""
     fraction = torsion_lambda(states, length)
+    return TorsionSpring(length, fraction, stiffness_about(states, length * (1 - fraction)))
+
+
+def stiffness_about(states: States, place: float) -> float:
+    """Stiffness [N m/rad] by least squares on the moment about a pin at (``place``, 0) [m]."""
     whole = states.whole()
     if len(whole) < 2:
         raise FlexureError(f"{len(whole)} states with tip, force and moment; the torsion spring needs 2 or more")
-    pin = whole.tip - [length * (1 - fraction), 0.0]
+    pin = whole.tip - [place, 0.0]
     about_pin = whole.moment + pin[:, 0] * whole.force[:, 1] - pin[:, 1] * whole.force[:, 0]
-    return TorsionSpring(length, fraction, float(whole.theta @ about_pin / (whole.theta @ whole.theta)))
+    return float(whole.theta @ about_pin / (whole.theta @ whole.theta))
