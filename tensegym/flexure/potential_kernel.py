@@ -34,10 +34,8 @@ def horner(row, u):
 
 
 @njit(**OPTIONS)
-def wrench(coefficients, scales, x, y, theta):
-    """Force x, y [N] in base axes and moment [N m] about the tip that hold it at (x, y) [m], theta; energy [J]."""
-    length, moment0, theta0 = scales[0], scales[1], scales[2]
-    u = theta / theta0
+def at_angle(coefficients, u):
+    """su, sk, C, rho, sigma, h, g at u, then their slopes in that order."""
     su, su1, _ = horner(coefficients[SU], u)
     sk, sk1, _ = horner(coefficients[SK], u)
     sa, sa1, _ = horner(coefficients[SA], u)
@@ -46,17 +44,34 @@ def wrench(coefficients, scales, x, y, theta):
     sig, sig1, _ = horner(coefficients[SIGMA], u)
     h, h1, _ = horner(coefficients[H], u)
     g, g1, _ = horner(coefficients[G], u)
+    soft = sa * sa + u * u * sb * sb
+    soft1 = 2 * (sa * sa1 + u * sb * sb + u * u * sb * sb1)
+    return su, sk, soft, rho, sig, h, g, su1, sk1, soft1, rho1, sig1, h1, g1
+
+
+@njit(**OPTIONS)
+def slope_over_u(at, u, n, p, big_y):
+    """dV/du at a fixed e in units of M0; at: of at_angle; n, p: the force in the axes turned by theta / 2; Y."""
+    su, sk, _, _, _, _, _, su1, sk1, soft1, rho1, sig1, h1, g1 = at
+    return (su * (u * su + u * u * su1) - n * (rho1 + (h1 + g1 * big_y) * big_y) - 0.5 * soft1 * n * n
+            + sk * sk1 * big_y * big_y - sig1 * p)  # fmt: skip
+
+
+@njit(**OPTIONS)
+def wrench(coefficients, scales, x, y, theta):
+    """Force x, y [N] in base axes and moment [N m] about the tip that hold it at (x, y) [m], theta; energy [J]."""
+    length, moment0, theta0 = scales[0], scales[1], scales[2]
+    u = theta / theta0
+    at = at_angle(coefficients, u)
+    su, sk, soft, rho, sig, h, g = at[:7]
     c, s = math.cos(theta / 2), math.sin(theta / 2)
     ex, ey = (c * x + s * y) / length, (c * y - s * x) / length
     big_y = ey - sig
-    soft = sa * sa + u * u * sb * sb
-    soft1 = 2 * (sa * sa1 + u * sb * sb + u * u * sb * sb1)
     stretch = ex - 1 - rho - (h + g * big_y) * big_y
     n = stretch / soft
     k = sk * sk
     p = k * big_y - n * (h + 2 * g * big_y)
-    m = (su * (u * su + u * u * su1) - n * (rho1 + (h1 + g1 * big_y) * big_y) - 0.5 * soft1 * n * n
-         + sk * sk1 * big_y * big_y - sig1 * p) / theta0 + 0.5 * (n * ey - p * ex)  # fmt: skip
+    m = slope_over_u(at, u, n, p, big_y) / theta0 + 0.5 * (n * ey - p * ex)
     force = moment0 / length
     energy = moment0 * 0.5 * (u * u * su * su + stretch * n + k * big_y * big_y)
     return force * (c * n - s * p), force * (s * n + c * p), moment0 * m, energy
@@ -127,26 +142,17 @@ def pose(coefficients, scales, theta, fx, fy):
     """Tip x, y [m] and the moment [N m] under the dead force (fx, fy) [N] at theta, explicit; energy; K - 2 g n."""
     length, moment0, theta0 = scales[0], scales[1], scales[2]
     u = theta / theta0
-    su, su1, _ = horner(coefficients[SU], u)
-    sk, sk1, _ = horner(coefficients[SK], u)
-    sa, sa1, _ = horner(coefficients[SA], u)
-    sb, sb1, _ = horner(coefficients[SB], u)
-    rho, rho1, _ = horner(coefficients[RHO], u)
-    sig, sig1, _ = horner(coefficients[SIGMA], u)
-    h, h1, _ = horner(coefficients[H], u)
-    g, g1, _ = horner(coefficients[G], u)
+    at = at_angle(coefficients, u)
+    su, sk, soft, rho, sig, h, g = at[:7]
     c, s = math.cos(theta / 2), math.sin(theta / 2)
     scale = length / moment0
     n, p = scale * (c * fx + s * fy), scale * (c * fy - s * fx)
     k = sk * sk
     guard = k - 2 * g * n
     big_y = (p + n * h) / guard
-    soft = sa * sa + u * u * sb * sb
-    soft1 = 2 * (sa * sa1 + u * sb * sb + u * u * sb * sb1)
     ex = 1 + rho + soft * n + (h + g * big_y) * big_y
     ey = sig + big_y
-    m = (su * (u * su + u * u * su1) - n * (rho1 + (h1 + g1 * big_y) * big_y) - 0.5 * soft1 * n * n
-         + sk * sk1 * big_y * big_y - sig1 * p) / theta0 + 0.5 * (n * ey - p * ex)  # fmt: skip
+    m = slope_over_u(at, u, n, p, big_y) / theta0 + 0.5 * (n * ey - p * ex)
     energy = moment0 * 0.5 * (u * u * su * su + soft * n * n + k * big_y * big_y)
     return length * (c * ex - s * ey), length * (s * ex + c * ey), moment0 * m, energy, guard
 
