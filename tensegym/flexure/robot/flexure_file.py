@@ -47,7 +47,7 @@ def load_robot(path: str | Path, **options: Any) -> FlexibleRobot:
         raise FlexureError(f"{path} is not TOML: {error}") from error
     _known(path, "the file", data, {"urdf", "flexure"})
     if not isinstance(data.get("urdf"), str):
-        raise FlexureError(f'{path}: urdf = {data.get("urdf")!r}; give the name of a URDF file')
+        raise FlexureError(f"{path}: urdf = {data.get('urdf')!r}; give the name of a URDF file")
     sections = data.get("flexure")
     if not isinstance(sections, list) or not sections:
         raise FlexureError(f"{path} declares no flexure; add a [[flexure]] section")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,11 +17,20 @@ from ..sampling import Box
 from ..states import FloatArray
 from ..torsion_spring import TorsionSpring
 from . import spring_kernel as kernel
-from .springs import Spring, spring_row
+from .springs import Spring, Springs, spring_row
 from .urdf_rewrite import Chain
 
-if TYPE_CHECKING:
-    from .flexible_robot import FlexibleRobot
+
+class Host(Protocol):
+    """What a flexure needs of its robot, a FlexibleRobot: to be built in, and to read where it is."""
+
+    @property
+    def springs(self) -> Springs: ...
+
+    @property
+    def positions(self) -> FloatArray: ...
+
+    def put(self, flexure: FlexureJoint) -> None: ...
 
 
 @dataclass(frozen=True)
@@ -52,7 +61,7 @@ class FlexureJoint:
     """
 
     def __init__(
-        self, robot: FlexibleRobot, joint: str, model: Joint | Spring | str | Path, *, kind: str = "potential",
+        self, robot: Host, joint: str, model: Joint | Spring | str | Path, *, kind: str = "potential",
         box: Box | None = None, along: ArrayLike | None = None, centre: float = 0.5, loss_time: float = 0.0,
         across: tuple[float, float, float] | None = None,
     ) -> None:  # fmt: skip

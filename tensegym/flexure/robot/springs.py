@@ -47,9 +47,7 @@ def spring_row(spring: Spring | StiffnessDiagram) -> tuple[int, list[float]]:
         return kernel.PLANAR, [spring.length, spring.b * spring.length, spring.kx, spring.ky, spring.kz]
     if isinstance(spring, TorsionSpring):
         return kernel.TORSION, [spring.length, spring.fraction * spring.length, spring.stiffness, 0.0, 0.0]
-    raise FlexureError(
-        f"a {type(spring).__name__} is no gradient of an energy: take potential, planar or torsion"
-    )
+    raise FlexureError(f"a {type(spring).__name__} is no gradient of an energy: take potential, planar or torsion")
 
 
 def spring_table(springs: Sequence[Spring], columns: Sequence[Sequence[int]], across: Sequence[Sequence[float]],

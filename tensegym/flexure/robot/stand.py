@@ -18,8 +18,9 @@ from ...bullet import packaged_urdf
 from ...errors import FlexureError, SimulationError
 from ..joint import Joint, Model
 from ..states import FloatArray
-from .flexible_robot import FlexibleRobot, Load
+from .flexible_robot import FlexibleRobot
 from .flexure_joint import FlexureJoint
+from .load import Load
 
 ARM, LENGTH = 0.12, 0.04  # m, of the URDF: the arm beyond the tip, the hinge
 END = (0.14, 0.0, 0.0)  # m, the arm's end in its own frame, whose origin is half a hinge before the tip
@@ -167,4 +168,3 @@ def release(joint: Joint, angle: float, seconds: float, *, dt: float = 1e-3, los
             theta.append(flexure.pose[2])
             energy.append(robot.energies().total)
     return Vibration(np.arange(len(theta)) * np.float64(dt), np.array(theta), np.array(energy))
-
