@@ -88,7 +88,7 @@ class FullObservation(Observation):
 
     def read(self, robot: TensegrityRobot, direction: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """The observation (size,), and the node positions (n, 3) and body velocities (b, 6) it was made from."""
-        velocities = robot.world.velocities()
+        velocities = robot.velocities_in_world()
         nodes, speeds = robot.nodes_in_world(velocities)
         turn = heading_rotation(direction)
         centre = robot.centre_of_mass_in_world()
@@ -125,7 +125,7 @@ class OnboardObservation(Observation):
 
     def read(self, robot: TensegrityRobot, direction: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """As FullObservation.read."""
-        velocities = robot.world.velocities()
+        velocities = robot.velocities_in_world()
         poses = robot.poses_in_world[: self.rods]
         axes = Rotation.from_quat(poses[:, 3:]).as_matrix()[:, :, 2]
         rates = velocities[: self.rods, 3:]

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .errors import SimulationError
 from .structure import FloatArray
@@ -42,12 +43,26 @@ def _disconnect(client: int) -> None:
         pybullet.disconnect(physicsClientId=client)
 
 
+def _make_plain(client: int, body: int, link: int, friction: float) -> None:
+    """Coulomb friction and nothing else: the engine's damping, rolling friction and bounce off."""
+    # one call each: on a link but the base the engine drops what stands beside a damping or a speed limit; and it
+    # clamps joint speeds at 100 by default, which would hide a divergence. Contacts multiply two bodies' coefficients
+    for change in ({"linearDamping": 0, "angularDamping": 0}, {"maxJointVelocity": 1e6}, {"jointDamping": 0},
+                   {"lateralFriction": math.sqrt(friction), "restitution": 0, "rollingFriction": 0,
+                    "spinningFriction": 0}):  # fmt: skip
+        pybullet.changeDynamics(body, link, **change, physicsClientId=client)
+    pybullet.setCollisionFilterGroupMask(body, link, _ROBOT_GROUP, _ROBOT_GROUP | _GROUND_GROUP, physicsClientId=client)
+
+
 class World:
     """A physics client with bodies in it.
 
-    Bodies are rigid, each a multibody of one link, with true inertia, no damping and no sleeping. Maximal coordinates
-    would be a little cheaper, but there the engine solves friction along one direction only, that of the sliding the
-    step would begin with, and what is left across it lets loaded feet creep by 7 cm/s at 2 ms on a robot at rest.
+    Bodies are multibodies of one link, or of two that a pin joins, with true inertia, no damping and no sleeping.
+    Maximal coordinates would be a little cheaper, but there the engine solves friction along one direction only, that
+    of the sliding the step would begin with, and what is left across it lets loaded feet creep by 7 cm/s at 2 ms on a
+    robot at rest.
+
+    Rows of per-link arrays are the bodies' first links in the order of loading, then the second links in that order.
     """
 
     def __init__(self, dt: float, gravity: float, gui: bool = False) -> None:
@@ -58,10 +73,13 @@ class World:
             raise SimulationError("PyBullet gave no physics client; close other worlds first")
         self._finalizer = weakref.finalize(self, _disconnect, self.client)
         self.bodies: list[int] = []
+        self.pinned: list[int] = []
+        """Rows in `bodies` of those with two links."""
         self.ground: int | None = None
+        self._second_links: list[int] = []
         self._lines: list[int] = []
-        self._pack = struct.Struct("0d")
-        self.poses = np.zeros((0, 7))
+        self._pack, self._pack_angles = struct.Struct("0d"), struct.Struct("0d")
+        self.poses, self.angles = np.zeros((0, 7)), np.zeros(0)
         pybullet.setGravity(0, 0, -gravity, physicsClientId=self.client)
         pybullet.setTimeStep(dt, physicsClientId=self.client)
         pybullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=self.client)
@@ -73,22 +91,23 @@ class World:
     # -- bodies ---------------------------------------------------------------------------------------------------
 
     def load(self, urdf: Path, pose: Sequence[float], friction: float) -> int:
-        """Load a one-link URDF at pose (7,) position and xyzw; returns its row in `poses`."""
+        """Load a URDF of one link, or of two with a revolute joint, at pose (7,) position and xyzw of the first link's
+        centre of mass; returns its row in `bodies`."""
         body = pybullet.loadURDF(
             str(urdf), list(pose[:3]), list(pose[3:]), useMaximalCoordinates=0,
             flags=pybullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=self.client,
         )  # fmt: skip
-        # contacts multiply the two bodies' coefficients
-        pybullet.changeDynamics(
-            body, -1, linearDamping=0, angularDamping=0, lateralFriction=math.sqrt(friction), restitution=0,
-            rollingFriction=0, spinningFriction=0, physicsClientId=self.client,
-        )  # fmt: skip
-        pybullet.setCollisionFilterGroupMask(
-            body, -1, _ROBOT_GROUP, _ROBOT_GROUP | _GROUND_GROUP, physicsClientId=self.client
-        )
+        links = pybullet.getNumJoints(body, physicsClientId=self.client)
+        for link in range(-1, links):
+            _make_plain(self.client, body, link, friction)
+        if links:
+            pybullet.setJointMotorControl2(body, 0, pybullet.VELOCITY_CONTROL, force=0, physicsClientId=self.client)
+            self.pinned.append(len(self.bodies))
         self.bodies.append(body)
-        self.poses = np.zeros((len(self.bodies), 7))
+        self.poses, self.angles = np.zeros((len(self.bodies) + len(self.pinned), 7)), np.zeros(len(self.pinned))
         self._pack = struct.Struct(f"{7 * len(self.bodies)}d")
+        self._pack_angles = struct.Struct(f"{len(self.pinned)}d")
+        self._second_links = [self.bodies[row] for row in self.pinned]
         return len(self.bodies) - 1
 
     def add_ground(self, friction: float) -> None:
@@ -102,17 +121,25 @@ class World:
             self.ground, -1, _GROUND_GROUP, _ROBOT_GROUP, physicsClientId=self.client
         )
 
-    def place(self, poses: FloatArray, velocities: FloatArray | None = None) -> None:
-        """Set every body's pose (b, 7) and velocity (b, 6) linear, angular; at rest by default."""
-        moving = np.zeros((len(poses), 6)) if velocities is None else velocities
-        for body, pose, velocity in zip(self.bodies, poses.tolist(), moving.tolist(), strict=True):
+    def place(
+        self, poses: FloatArray, velocities: FloatArray, angles: FloatArray | None = None,
+        rates: FloatArray | None = None,
+    ) -> None:  # fmt: skip
+        """Set pose (b, 7) and velocity (b, 6) linear, angular of every first link; pins' angles and rates, 0 by default.
+        """
+        for body, pose, velocity in zip(self.bodies, poses.tolist(), velocities.tolist(), strict=True):
             pybullet.resetBasePositionAndOrientation(body, pose[:3], pose[3:], physicsClientId=self.client)
             pybullet.resetBaseVelocity(body, velocity[:3], velocity[3:], physicsClientId=self.client)
+        for pin, body in enumerate(self._second_links):
+            angle = 0.0 if angles is None else float(angles[pin])
+            rate = 0.0 if rates is None else float(rates[pin])
+            pybullet.resetJointState(body, 0, angle, rate, physicsClientId=self.client)
 
     # -- the substep ----------------------------------------------------------------------------------------------
 
-    def read_poses(self) -> FloatArray:
-        """Refresh and return `poses` (b, 7): position [m] and quaternion xyzw of every body, in the world."""
+    def read(self) -> tuple[FloatArray, FloatArray]:
+        """Refresh and return `poses` (l, 7), position [m] and quaternion xyzw of every link's centre of mass in the
+        world, and `angles` (p,) of the pins [rad]. The rows of second links follow from both: the caller fills them."""
         read, client = pybullet.getBasePositionAndOrientation, self.client
         values: list[float] = []
         for body in self.bodies:
@@ -120,21 +147,30 @@ class World:
             values += position
             values += orientation
         self._pack.pack_into(self.poses.data, 0, *values)
-        return self.poses
+        if self.pinned:
+            angles = [pybullet.getJointState(body, 0, client)[0] for body in self._second_links]
+            self._pack_angles.pack_into(self.angles.data, 0, *angles)
+        return self.poses, self.angles
 
     def step(self, wrenches: FloatArray) -> None:
-        """Apply force and moment (b, 6) about the body centres, world axes, and advance one time step."""
+        """Apply force and moment (l, 6) about the links' centres, world axes, and advance one time step.
+
+        Of a second link the moment alone: its force has been carried over to the first one.
+        """
         force, torque, client = pybullet.applyExternalForce, pybullet.applyExternalTorque, self.client
-        for body, pose, w in zip(self.bodies, self.poses.tolist(), wrenches.tolist(), strict=True):
+        rows = wrenches.tolist()
+        for body, pose, w in zip(self.bodies, self.poses.tolist(), rows, strict=False):
             force(body, -1, w[:3], pose[:3], 2, client)
             torque(body, -1, w[3:], 2, client)
+        for body, w in zip(self._second_links, rows[len(self.bodies) :], strict=True):
+            torque(body, 0, w[3:], 2, client)
         pybullet.stepSimulation(client)
 
-    def velocities(self) -> FloatArray:
-        """(b, 6) linear [m/s] and angular [rad/s] velocity of every body, in the world."""
-        return np.array(
-            [sum(pybullet.getBaseVelocity(body, physicsClientId=self.client), ()) for body in self.bodies]
-        )
+    def push(self, velocity: ArrayLike) -> None:
+        """Add a velocity (3,) [m/s] to every body."""
+        for body in self.bodies:
+            linear, angular = pybullet.getBaseVelocity(body, physicsClientId=self.client)
+            pybullet.resetBaseVelocity(body, (np.add(linear, velocity)).tolist(), angular, physicsClientId=self.client)
 
     def set_gravity(self, gravity: Sequence[float]) -> None:
         """Gravity (3,) in the world [m/s^2], in place of the one straight down."""
@@ -202,14 +238,7 @@ class Articulated:
         count = pybullet.getNumJoints(body, physicsClientId=self.client)
         self.joint_info = [pybullet.getJointInfo(body, i, physicsClientId=self.client) for i in range(count)]
         for link in range(-1, count):
-            # one call each: on a link but the base the engine drops what stands beside a damping or a speed limit;
-            # and it clamps joint speeds at 100 by default, which would hide a divergence
-            for change in ({"linearDamping": 0, "angularDamping": 0}, {"maxJointVelocity": 1e6}, {"jointDamping": 0},
-                           {"restitution": 0, "lateralFriction": math.sqrt(friction)}):  # fmt: skip
-                pybullet.changeDynamics(body, link, **change, physicsClientId=self.client)
-            pybullet.setCollisionFilterGroupMask(
-                body, link, _ROBOT_GROUP, _ROBOT_GROUP | _GROUND_GROUP, physicsClientId=self.client
-            )
+            _make_plain(self.client, body, link, friction)
         kinds = {pybullet.JOINT_REVOLUTE: REVOLUTE, pybullet.JOINT_PRISMATIC: PRISMATIC, pybullet.JOINT_FIXED: FIXED}
         for info in self.joint_info:
             if info[2] not in kinds:

@@ -8,6 +8,9 @@ tensions use the state at the start of a step; implicit ones solve for the tensi
 
 a linear complementarity problem with T >= 0, where J maps body velocities to length rates. It is symmetric positive
 definite, so projected Gauss-Seidel converges to its only solution.
+
+The flexure of a split rod is one more row: a two-way spring whose length is the angle of its pin [rad], tension its
+moment [N m]. Where its own motion is slow against the step it keeps its explicit force in an implicit step too.
 """
 
 from __future__ import annotations
@@ -16,6 +19,7 @@ import numpy as np
 from numba import njit
 
 from .drives import CURRENT, PULLED, VOLTAGE, drive_step
+from .pins import add_generalised, pin_axis, pinned_inertia, second_poses, second_twist, step_pinned, symmetry_axis
 from .rotation import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE, turn_bodies
 
 # Columns of a cable's parameter row
@@ -25,6 +29,7 @@ DRIVE_WORK, ELECTRICAL_ENERGY, CENTRE_PATH, FOOT_PATH, FOOT_PATH_SUM = range(5)
 ACCOUNT_SIZE = 5
 GROUND_TOLERANCE = 1e-3  # m; a foot whose gap to the plane is below this is grounded
 _MAX_SWEEPS, _TOLERANCE = 200, 1e-6  # of the implicit solve; changes below 1e-6 of the largest tension end it
+_SLOW = 0.1  # (dt w)^2 and dt c A below which a flexure's row stays explicit; the scheme is stable up to 4
 
 
 @njit(cache=True)
@@ -59,10 +64,12 @@ def points_in_world(poses, bodies, locals_, out):
 
 
 @njit(cache=True)
-def cable_geometry(poses, ends, cables, arms, directions, lengths):
-    """Cable ends as arms from their bodies' centres, unit directions from end a to end b, lengths; world axes, m.
+def cable_geometry(poses, ends, cables, turns, directions, lengths):
+    """Unit directions from end a to end b, lengths, and the turning that a length's rate takes from each end's body.
 
-    ends (c, 2) bodies, cables (c, 9) -> arms (c, 2, 3), directions (c, 3), lengths (c,).
+    ends (c, 2) bodies, cables (c, 9) -> turns (c, 2, 3) [m], directions (c, 3), lengths (c,) [m]; world axes. The rate
+    is directions . (v_b - v_a) + sum over the ends of turns . w, and a tension T exerts on end a the force T directions
+    and the moment -T turns[0] about its body's centre, on end b -T directions and -T turns[1].
     """
     r = np.empty((len(poses), 3, 3))
     for b in range(len(poses)):
@@ -72,13 +79,32 @@ def cable_geometry(poses, ends, cables, arms, directions, lengths):
         for side in range(2):
             b, x, y, z = ends[c, side], cables[c, 3 * side], cables[c, 3 * side + 1], cables[c, 3 * side + 2]
             for i in range(3):
-                arms[c, side, i] = r[b, i, 0] * x + r[b, i, 1] * y + r[b, i, 2] * z
+                turns[c, side, i] = r[b, i, 0] * x + r[b, i, 1] * y + r[b, i, 2] * z  # the arm, for now
         for i in range(3):
-            directions[c, i] = (poses[ends[c, 1], i] + arms[c, 1, i]) - (poses[ends[c, 0], i] + arms[c, 0, i])
+            directions[c, i] = (poses[ends[c, 1], i] + turns[c, 1, i]) - (poses[ends[c, 0], i] + turns[c, 0, i])
             square += directions[c, i] ** 2
         lengths[c] = np.sqrt(square)
         for i in range(3):
             directions[c, i] /= lengths[c]
+        nx, ny, nz = directions[c, 0], directions[c, 1], directions[c, 2]
+        for side in range(2):
+            rx, ry, rz = turns[c, side, 0], turns[c, side, 1], turns[c, side, 2]
+            sign = 1.0 if side == 1 else -1.0
+            turns[c, side, 0] = sign * (ry * nz - rz * ny)
+            turns[c, side, 1] = sign * (rz * nx - rx * nz)
+            turns[c, side, 2] = sign * (rx * ny - ry * nx)
+
+
+@njit(cache=True)
+def flexure_geometry(poses, pins, pin_params, angles, first, turns, directions, lengths):
+    """The rows of the flexures, from row ``first`` on, as `cable_geometry` gives those of the cables."""
+    axis = np.empty(3)
+    for p in range(len(pins)):
+        pin_axis(poses, pins, pin_params, p, axis)
+        lengths[first + p] = angles[p]
+        for i in range(3):
+            directions[first + p, i] = 0.0
+            turns[first + p, 0, i], turns[first + p, 1, i] = -axis[i], axis[i]
 
 
 @njit(cache=True)
@@ -93,51 +119,78 @@ def explicit_tensions(cables, lengths, rates, natural, tensions):
 
 
 @njit(cache=True)
-def mobility_matrix(poses, ends, bodies, arms, directions, out):
-    """A = J M^-1 J^T (c, c) [1/kg] for bodies symmetric about their z axis."""
+def mobility_matrix(poses, ends, bodies, partner, pins, pin_params, turns, directions, out):
+    """A = J M^-1 J^T (c, c) [1/kg] for bodies symmetric about their z axis, pinned pairs moving as their pin allows."""
     count = len(ends)
-    turns = np.empty((count, 2, 3))  # angular part of a unit tension's generalised force
-    accelerations = np.empty((count, 2, 3))  # angular acceleration it causes
+    answers = np.empty((count, 2, 2, 6))  # accelerations by a unit of the row's end: of its body, of the body's partner
     axis = np.empty((len(poses), 3))
     for b in range(len(poses)):
-        x, y, z, w = poses[b, 3], poses[b, 4], poses[b, 5], poses[b, 6]
-        axis[b, 0], axis[b, 1], axis[b, 2] = 2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)
+        symmetry_axis(poses[b], axis[b])
     for c in range(count):
-        nx, ny, nz = directions[c, 0], directions[c, 1], directions[c, 2]
         for side in range(2):
             body = ends[c, side]
-            rx, ry, rz = arms[c, side, 0], arms[c, side, 1], arms[c, side, 2]
-            sign = 1.0 if side == 1 else -1.0
-            tx, ty, tz = sign * (ry * nz - rz * ny), sign * (rz * nx - rx * nz), sign * (rx * ny - ry * nx)
-            turns[c, side, 0], turns[c, side, 1], turns[c, side, 2] = tx, ty, tz
+            if partner[body] >= 0:
+                continue
+            sign = bodies[body, INVERSE_MASS] if side == 1 else -bodies[body, INVERSE_MASS]
+            tx, ty, tz = turns[c, side, 0], turns[c, side, 1], turns[c, side, 2]
             across = bodies[body, INVERSE_TRANSVERSE]
             more = bodies[body, INVERSE_AXIAL] - across
             more *= tx * axis[body, 0] + ty * axis[body, 1] + tz * axis[body, 2]
-            accelerations[c, side, 0] = across * tx + more * axis[body, 0]
-            accelerations[c, side, 1] = across * ty + more * axis[body, 1]
-            accelerations[c, side, 2] = across * tz + more * axis[body, 2]
+            for i in range(3):
+                answers[c, side, 0, i] = sign * directions[c, i]
+                answers[c, side, 0, 3 + i] = across * turns[c, side, i] + more * axis[body, i]
+    _pinned_answers(poses, ends, bodies, pins, pin_params, turns, directions, answers)
     for c in range(count):
         for d in range(c + 1):
             total = 0.0
             for side in range(2):
+                sign = 1.0 if side == 1 else -1.0
                 for other in range(2):
-                    if ends[c, side] != ends[d, other]:
+                    if ends[d, other] == ends[c, side]:
+                        answer = answers[d, other, 0]
+                    elif ends[d, other] == partner[ends[c, side]]:
+                        answer = answers[d, other, 1]
+                    else:
                         continue
-                    body = ends[c, side]
-                    sign = 1.0 if side == other else -1.0
                     for i in range(3):
-                        total += sign * bodies[body, INVERSE_MASS] * directions[c, i] * directions[d, i]
-                        total += turns[c, side, i] * accelerations[d, other, i]
+                        total += sign * directions[c, i] * answer[i] + turns[c, side, i] * answer[3 + i]
             out[c, d] = total
             out[d, c] = total
 
 
 @njit(cache=True)
-def implicit_tensions(poses, ends, cables, bodies, arms, directions, lengths, rates, natural, dt, tensions):
+def _pinned_answers(poses, ends, bodies, pins, pin_params, turns, directions, answers):
+    geometry, mass, inverse = np.empty((6, 3)), np.empty((7, 7)), np.empty((7, 7))
+    push, motion, force, twist = np.empty(7), np.empty(7), np.empty(3), np.empty(6)
+    for p in range(len(pins)):
+        pinned_inertia(poses, bodies, pins, pin_params, p, geometry, mass, inverse)
+        for c in range(len(ends)):
+            for side in range(2):
+                second = ends[c, side] == pins[p, 1]
+                if not second and ends[c, side] != pins[p, 0]:
+                    continue
+                for i in range(3):
+                    force[i] = directions[c, i] if side == 1 else -directions[c, i]
+                push[:] = 0.0
+                add_generalised(geometry, second, force, turns[c, side], push)
+                for i in range(7):
+                    total = 0.0
+                    for j in range(7):
+                        total += inverse[i, j] * push[j]
+                    motion[i] = total
+                second_twist(geometry, motion, twist)
+                for i in range(6):
+                    answers[c, side, 1 if second else 0, i] = motion[i]
+                    answers[c, side, 0 if second else 1, i] = twist[i]
+
+
+@njit(cache=True)
+def implicit_tensions(poses, ends, cables, bodies, partner, pins, pin_params, turns, directions, lengths, rates,
+                      natural, dt, tensions):  # fmt: skip
     """Tensions (c,) [N] at the end of the step; ``tensions`` holds the last step's as the starting guess."""
     count = len(ends)
     mobility = np.empty((count, count))
-    mobility_matrix(poses, ends, bodies, arms, directions, mobility)
+    mobility_matrix(poses, ends, bodies, partner, pins, pin_params, turns, directions, mobility)
     weight, target = np.empty(count), np.empty(count)
     for c in range(count):
         k, damping = cables[c, STIFFNESS], cables[c, DAMPING]
@@ -148,6 +201,11 @@ def implicit_tensions(poses, ends, cables, bodies, arms, directions, lengths, ra
             target[c] = 0.0  # stays slack
             weight[c] = np.inf
             tensions[c] = 0.0
+    for c in range(count - len(pins), count):
+        k, damping = cables[c, STIFFNESS], cables[c, DAMPING]
+        if dt * mobility[c, c] * max(dt * k, damping) < _SLOW:
+            weight[c] = np.inf
+            tensions[c] = k * (lengths[c] - natural[c]) + damping * rates[c]
     residual = target.copy()  # target - A T, kept up to date: a whole row a change, which vectorises
     for c in range(count):
         if tensions[c] != 0:
@@ -173,22 +231,38 @@ def implicit_tensions(poses, ends, cables, bodies, arms, directions, lengths, ra
 
 
 @njit(cache=True)
-def substep(poses, last_poses, ends, cables, bodies, natural, lengths, tensions, rates, drive_constants, drives,
-            first_driven, feet, foot_points, foot_radius, foot_positions, masses, account, dt, implicit,
-            wrenches):  # fmt: skip
+def start(poses, angles, ends, cables, pins, pin_params, springs):
+    """Set lengths, rates, tensions of ``springs`` (4, c), whose last row is the natural lengths, for a state at rest."""
+    count, flexures = len(ends), len(ends) - len(pins)
+    turns, directions = np.empty((count, 2, 3)), np.empty((count, 3))
+    cable_geometry(poses, ends[:flexures], cables, turns, directions, springs[0])
+    flexure_geometry(poses, pins, pin_params, angles, flexures, turns, directions, springs[0])
+    springs[1] = 0.0
+    explicit_tensions(cables, springs[0], springs[1], springs[3], springs[2])
+
+
+@njit(cache=True)
+def substep(poses, angles, last_poses, ends, cables, bodies, partner, pins, pin_params, natural, lengths, tensions,
+            rates, drive_constants, drives, first_driven, feet, foot_points, foot_radius, foot_positions, masses,
+            account, dt, implicit, wrenches):  # fmt: skip
     """One kernel a substep: geometry, tensions, wrenches (b, 6) in world axes about body centres, drives, account.
 
-    Everything after ``cables`` and before ``dt`` is state and is updated in place; ``wrenches`` is written.
+    Everything after ``pin_params`` and before ``dt`` is state and is updated in place, and so are the poses of second
+    halves; ``wrenches`` is written.
     """
     count = len(ends)
-    arms, directions = np.empty((count, 2, 3)), np.empty((count, 3))
+    turns, directions = np.empty((count, 2, 3)), np.empty((count, 3))
     before = tensions[first_driven : first_driven + len(drives)].copy()
     rates[:] = lengths
-    cable_geometry(poses, ends, cables, arms, directions, lengths)
+    second_poses(pins, pin_params, angles, poses)
+    flexures = count - len(pins)
+    cable_geometry(poses, ends[:flexures], cables, turns, directions, lengths)
+    flexure_geometry(poses, pins, pin_params, angles, flexures, turns, directions, lengths)
     for c in range(count):
         rates[c] = (lengths[c] - rates[c]) / dt
     if implicit:
-        implicit_tensions(poses, ends, cables, bodies, arms, directions, lengths, rates, natural, dt, tensions)
+        implicit_tensions(poses, ends, cables, bodies, partner, pins, pin_params, turns, directions, lengths, rates,
+                          natural, dt, tensions)  # fmt: skip
     else:
         explicit_tensions(cables, lengths, rates, natural, tensions)
 
@@ -196,15 +270,12 @@ def substep(poses, last_poses, ends, cables, bodies, natural, lengths, tensions,
     for c in range(count):
         for side in range(2):
             pull = tensions[c] if side == 0 else -tensions[c]
-            b, fx, fy, fz = ends[c, side], pull * directions[c, 0], pull * directions[c, 1], pull * directions[c, 2]
-            rx, ry, rz = arms[c, side, 0], arms[c, side, 1], arms[c, side, 2]
-            wrenches[b, 0] += fx
-            wrenches[b, 1] += fy
-            wrenches[b, 2] += fz
-            wrenches[b, 3] += ry * fz - rz * fy
-            wrenches[b, 4] += rz * fx - rx * fz
-            wrenches[b, 5] += rx * fy - ry * fx
-    turn_bodies(poses, last_poses, bodies, dt, wrenches)
+            body = ends[c, side]
+            for i in range(3):
+                wrenches[body, i] += pull * directions[c, i]
+                wrenches[body, 3 + i] -= tensions[c] * turns[c, side, i]
+    turn_bodies(poses, last_poses, bodies, partner, dt, wrenches)
+    step_pinned(poses, last_poses, bodies, pins, pin_params, rates[flexures:], dt, wrenches)
 
     for d in range(len(drives)):
         c = first_driven + d

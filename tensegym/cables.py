@@ -10,17 +10,19 @@ from scipy.spatial.transform import Rotation
 from . import cable_forces as kernel
 from . import rotation
 from .design import RobotDesign
+from .pins import PinArrays
 from .structure import FloatArray, IntArray
 
 
 @dataclass(frozen=True)
 class CableArrays:
-    """Bodies are the rods in their order, then the payload; cables the elastic, the stiff, the payload's.
+    """Bodies are the rods in their order, then the payload, then the second halves of split rods, whose first halves
+    stand in the rods' rows; cables the elastic, the stiff, the payload's, then a row for each flexure.
 
-    ends (c, 2) bodies; params (c, 9) rows of the kernel's cable parameters; natural (c,) [m] at rest; bodies (b, 4)
-    rows of the kernel's body parameters; rest_poses (b, 7); masses (b,) [kg]; inertias (b, 3) principal [kg m^2];
-    feet (n,) body of each node; foot_points (n, 3) in the body's frame [m]; foot_radii (n,) [m]; first_driven the row
-    of the first stiff cable.
+    ends (c, 2) bodies; params (c, 9) rows of the kernel's cable parameters; natural (c,) at rest [m], [rad] for
+    flexures; bodies (b, 4) rows of the kernel's body parameters; rest_poses (b, 7); masses (b,) [kg]; inertias (b, 3)
+    principal [kg m^2]; feet (n,) body of each node; foot_points (n, 3) in the body's frame [m]; foot_radii (n,) [m];
+    first_driven the row of the first stiff cable.
     """
 
     ends: IntArray
@@ -34,28 +36,56 @@ class CableArrays:
     foot_points: FloatArray
     foot_radii: FloatArray
     first_driven: int
+    pins: PinArrays
+
+    @property
+    def first_flexure(self) -> int:
+        """Row of the first flexure among the cables; how many true cables there are."""
+        return len(self.ends) - len(self.pins.bodies)
 
 
 def cable_arrays(design: RobotDesign) -> CableArrays:
     """Flatten ``design`` at its standing structure."""
     structure, payload = design.standing, design.payload
     nodes, rods = structure.nodes, structure.rods
-    middles, axes = nodes[rods].mean(axis=1), nodes[rods[:, 1]] - nodes[rods[:, 0]]
+    split = design.flexible_rods.tolist()
+    second = {rod: len(rods) + (payload is not None) + i for i, rod in enumerate(split)}
+    middles = nodes[rods].mean(axis=1)
     centre = middles.mean(axis=0)
-    turns = [_turn_of_z_onto(axis) for axis in axes]
-    poses = np.array([[*m, *t.as_quat()] for m, t in zip(middles, turns, strict=True)])
-    masses = [design.rod(i).mass for i in range(len(rods))]
-    inertias = []
-    for i, length in enumerate(structure.rod_lengths):
-        across = design.rod(i).transverse_inertia(float(length))
-        inertias.append([across, across, design.rod(i).axial_inertia])
 
+    count = len(rods) + (payload is not None) + len(split)
+    poses, masses, inertias = np.zeros((count, 7)), np.zeros(count), np.zeros((count, 3))
     body_of_node = np.empty(len(nodes), dtype=np.int64)
     local_of_node = np.zeros((len(nodes), 3))
+    pins, pin_params, springs = [], [], []
     for i, (a, b) in enumerate(rods):
-        body_of_node[[a, b]] = i
-        local_of_node[a, 2], local_of_node[b, 2] = -structure.rod_lengths[i] / 2, structure.rod_lengths[i] / 2
-    kinds = [design.rod(body) for body in body_of_node.tolist()]
+        kind, length = design.rod(i), float(structure.rod_lengths[i])
+        along = (nodes[b] - nodes[a]) / length
+        if i not in second:
+            turn = _turn_of_z_onto(along)
+            poses[i] = [*middles[i], *turn.as_quat()]
+            masses[i] = kind.mass
+            across = kind.transverse_inertia(length)
+            inertias[i] = [across, across, kind.axial_inertia]
+            body_of_node[[a, b]] = i
+            local_of_node[a, 2], local_of_node[b, 2] = -length / 2, length / 2
+            continue
+        assert design.flexure is not None
+        axis = _pin_axis(along, middles[i] - centre, design.flexure.plane)
+        turn = Rotation.from_matrix(np.column_stack([np.cross(axis, along), axis, along]))
+        half, pin = kind.half(design.half_length(i)), design.rod_pin(i)
+        place = design.half_length(i) + pin.place * design.flexure.length  # of the pin, from node a
+        for body, node, sign in ((i, a, 1), (second[i], b, -1)):
+            poses[body] = [*(nodes[node] + sign * half.centre * along), *turn.as_quat()]
+            masses[body] = half.mass
+            inertias[body] = [half.transverse_inertia, half.transverse_inertia, half.axial_inertia]
+            body_of_node[node] = body
+            local_of_node[node, 2] = -sign * half.centre
+        pins.append([i, second[i]])
+        pin_params.append([0, 0, place - half.centre, 0, 0, place - (length - half.centre), 0, 1, 0])
+        springs.append([0] * 6 + [pin.stiffness, design.flexure.loss_time * pin.stiffness, 1])
+    turns = Rotation.from_quat(np.where(masses[:, None] > 0, poses[:, 3:], [0, 0, 0, 1]))
+    kinds = [design.rod(int(np.flatnonzero((rods == node).any(axis=1))[0])) for node in range(len(nodes))]
     foot_radii = np.array([max(rod.foot_radius, rod.tube_outer_radius) for rod in kinds])
 
     ends, params, natural = [], [], []
@@ -64,43 +94,65 @@ def cable_arrays(design: RobotDesign) -> CableArrays:
         (structure.stiff_cables, design.stiff_cable, design.stiff_cable_lengths),
     ):
         two_way = float(getattr(cable, "two_way", False))
-        for (a, b), length in zip(pairs, lengths, strict=True):
+        for (a, b), rest in zip(pairs, lengths, strict=True):
             # tied on the line between the two nodes, so that the rest position balances as if tied to the axis
-            along = (nodes[b] - nodes[a]) / np.linalg.norm(nodes[b] - nodes[a])
+            line = (nodes[b] - nodes[a]) / np.linalg.norm(nodes[b] - nodes[a])
             body_a, body_b = body_of_node[a], body_of_node[b]
-            local_a = local_of_node[a] + turns[body_a].inv().apply(design.attachment_radius * along)
-            local_b = local_of_node[b] - turns[body_b].inv().apply(design.attachment_radius * along)
+            local_a = local_of_node[a] + turns[body_a].inv().apply(design.attachment_radius * line)
+            local_b = local_of_node[b] - turns[body_b].inv().apply(design.attachment_radius * line)
             ends.append([body_a, body_b])
             params.append([*local_a, *local_b, cable.stiffness, cable.damping, two_way])
-            natural.append(length)
+            natural.append(rest)
     if payload:
+        row = len(rods)
+        tied = {pair[0]: own[:3] for pair, own in zip(pins, pin_params, strict=True)}
         for i, middle in enumerate(middles):
             outward = (middle - centre) / np.linalg.norm(middle - centre)
-            ends.append([i, len(rods)])
-            params.append([0, 0, 0, *payload.radius * outward, payload.stiffness, payload.damping, payload.two_way])
+            ends.append([i, row])
+            params.append([*tied.get(i, (0, 0, 0)), *payload.radius * outward, payload.stiffness, payload.damping,
+                           payload.two_way])  # fmt: skip
             natural.append(design.payload_natural_length)
-        poses = np.vstack([poses, [*centre, 0, 0, 0, 1]])
-        masses.append(payload.mass)
-        inertias.append([0.4 * payload.mass * payload.radius**2] * 3)
+        poses[row] = [*centre, 0, 0, 0, 1]
+        masses[row] = payload.mass
+        inertias[row] = 0.4 * payload.mass * payload.radius**2
+    ends += pins
+    params += springs
+    natural += [0.0] * len(pins)
 
-    bodies = np.zeros((len(masses), 4))
-    bodies[:, rotation.INVERSE_MASS] = 1 / np.array(masses)
-    bodies[:, rotation.INVERSE_TRANSVERSE] = 1 / np.array(inertias)[:, 0]
-    bodies[:, rotation.INVERSE_AXIAL] = 1 / np.array(inertias)[:, 2]
+    bodies = np.zeros((count, 4))
+    bodies[:, rotation.INVERSE_MASS] = 1 / masses
+    bodies[:, rotation.INVERSE_TRANSVERSE] = 1 / inertias[:, 0]
+    bodies[:, rotation.INVERSE_AXIAL] = 1 / inertias[:, 2]
     bodies[: len(rods), rotation.SPIN_DAMPING] = design.spin_damping
+    partner = np.full(count, -1)
+    for first, last in pins:
+        partner[first], partner[last] = last, first
+        bodies[[first, last], rotation.SPIN_DAMPING] = design.spin_damping / 2
     return CableArrays(
         ends=np.array(ends, dtype=np.int64).reshape(-1, 2),
         params=np.array(params, dtype=float).reshape(-1, 9),
         natural=np.array(natural, dtype=float),
         bodies=bodies,
         rest_poses=poses,
-        masses=np.array(masses),
-        inertias=np.array(inertias),
+        masses=masses,
+        inertias=inertias,
         feet=body_of_node,
         foot_points=local_of_node,
         foot_radii=foot_radii,
         first_driven=len(structure.cables),
+        pins=PinArrays(
+            np.array(pins, dtype=np.int64).reshape(-1, 2), np.array(pin_params, dtype=float).reshape(-1, 9), partner
+        ),
     )
+
+
+def _pin_axis(along: FloatArray, outward: FloatArray, plane: str) -> FloatArray:
+    """Unit axis (3,) across a rod with the direction ``along``: the rod bends in the plane it names."""
+    outward = outward - (outward @ along) * along
+    if np.linalg.norm(outward) < 1e-9:  # a rod through the centre has no such plane: any will do
+        outward = np.cross(along, np.eye(3)[np.abs(along).argmin()])
+    outward = outward / np.linalg.norm(outward)
+    return np.cross(along, outward) if plane == "radial" else outward
 
 
 def _turn_of_z_onto(axis: FloatArray) -> Rotation:
@@ -121,12 +173,23 @@ def explicit_step_limit(arrays: CableArrays) -> float:
     count = len(arrays.ends)
     if not count:
         return np.inf
-    arms, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
-    kernel.cable_geometry(arrays.rest_poses, arrays.ends, arrays.params, arms, directions, lengths)
-    mobility = np.empty((count, count))
-    kernel.mobility_matrix(arrays.rest_poses, arrays.ends, arrays.bodies, arms, directions, mobility)
+    mobility = mobility_at_rest(arrays)
     stiff = np.sqrt(arrays.params[:, kernel.STIFFNESS])
     damp = np.sqrt(arrays.params[:, kernel.DAMPING])
     k = np.linalg.eigvalsh(stiff[:, None] * mobility * stiff)[-1]
     c = np.linalg.eigvalsh(damp[:, None] * mobility * damp)[-1]
     return float((-2 * c + np.sqrt(4 * c * c + 4 * k)) / k)
+
+
+def mobility_at_rest(arrays: CableArrays) -> FloatArray:
+    """A = J M^-1 J^T (c, c) of all rows, the standing robot."""
+    count, flexures = len(arrays.ends), arrays.first_flexure
+    turns, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
+    poses, pins = arrays.rest_poses, arrays.pins
+    kernel.cable_geometry(poses, arrays.ends[:flexures], arrays.params, turns, directions, lengths)
+    angles = np.zeros(len(pins.bodies))
+    kernel.flexure_geometry(poses, pins.bodies, pins.params, angles, flexures, turns, directions, lengths)
+    mobility = np.empty((count, count))
+    kernel.mobility_matrix(poses, arrays.ends, arrays.bodies, pins.partner, pins.bodies, pins.params, turns, directions,
+                           mobility)  # fmt: skip
+    return mobility

@@ -114,7 +114,7 @@ def breathe(damping: float, dt: float = 1e-3, periods: int = 30) -> tuple[float,
         speeds = []
         for _ in range(int(periods / expected / dt)):
             robot.step()
-            v, x = robot.world.velocities()[:, :3], robot.poses_in_world[:, :3]
+            v, x = robot.velocities_in_world()[:, :3], robot.poses_in_world[:, :3]
             radial = x - x.mean(axis=0)
             speeds.append(((v * radial).sum(axis=1) / np.linalg.norm(radial, axis=1)).mean())
     s = np.array(speeds)

@@ -2,134 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from . import structure as structures
 from .equilibrium import check_balance, form_find
 from .errors import DesignError
+from .parameters import Drive, ElasticCable, Payload, Rod, RodFlexure, StiffCable, bounded, check_ranges
 from .structure import FloatArray, IntArray, Structure
 
-
-def bounded(low: float, high: float, default: float, unit: str, what: str, *, open_low: bool = False):
-    """A dataclass field holding a float in [low, high], or (low, high] with ``open_low``."""
-    return field(default=default, metadata={"low": low, "high": high, "open_low": open_low, "unit": unit, "what": what})
-
-
-def check_ranges(group: object) -> None:
-    """Raise DesignError naming the first field of a dataclass that is no finite number in its range."""
-    for f in fields(group):  # type: ignore[arg-type]
-        if "low" not in f.metadata:
-            continue
-        value, low, high = getattr(group, f.name), f.metadata["low"], f.metadata["high"]
-        number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-        inside = number and low <= value <= high and not (f.metadata["open_low"] and value == low)
-        if not inside:
-            bracket = "(" if f.metadata["open_low"] else "["
-            allowed = f"{bracket}{low:g}, {high:g}] {f.metadata['unit']}".rstrip()
-            raise DesignError(f"{type(group).__name__}.{f.name} = {value!r} is outside {allowed}")
-
-
-class Checked:
-    """Base of the parameter groups: ranges are checked on construction."""
-
-    def __post_init__(self) -> None:
-        check_ranges(self)
-
-
-@dataclass(frozen=True)
-class Rod(Checked):
-    """A rod: a tube with an equal lumped mass at each end and a spherical foot."""
-
-    tube_mass: float = bounded(0, 100, 0.028, "kg", "mass of the tube", open_low=True)
-    end_mass: float = bounded(0, 100, 0.05, "kg", "mass at each end")
-    tube_outer_radius: float = bounded(1e-4, 0.2, 0.004, "m", "outer radius, and that of the collision capsule")
-    tube_inner_radius: float = bounded(0, 0.2, 0.003, "m", "inner radius")
-    end_mass_radius: float = bounded(1e-4, 0.2, 0.01, "m", "radius of the solid ball each end mass is taken as")
-    foot_radius: float = bounded(1e-4, 0.2, 0.004, "m", "contact sphere at each end")
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.tube_inner_radius >= self.tube_outer_radius:
-            raise DesignError(
-                f"Rod.tube_inner_radius = {self.tube_inner_radius!r} must be below "
-                f"tube_outer_radius = {self.tube_outer_radius!r} m"
-            )
-
-    @property
-    def mass(self) -> float:
-        """Whole rod [kg]."""
-        return self.tube_mass + 2 * self.end_mass
-
-    @property
-    def axial_inertia(self) -> float:
-        """About the rod's axis [kg m^2]."""
-        tube = 0.5 * self.tube_mass * (self.tube_outer_radius**2 + self.tube_inner_radius**2)
-        return tube + 2 * 0.4 * self.end_mass * self.end_mass_radius**2
-
-    def transverse_inertia(self, length: float) -> float:
-        """About an axis through the centre across the rod [kg m^2], for a rod of this length [m]."""
-        tube = self.tube_mass * (length**2 / 12 + (self.tube_outer_radius**2 + self.tube_inner_radius**2) / 4)
-        return tube + 2 * self.end_mass * (0.4 * self.end_mass_radius**2 + length**2 / 4)
-
-
-@dataclass(frozen=True)
-class ElasticCable(Checked):
-    """The elastic cables: spring-dampers, tension only unless ``two_way``."""
-
-    stiffness: float = bounded(0, 1e6, 300.0, "N/m", "spring rate", open_low=True)
-    damping: float = bounded(0, 1e4, 5.0, "N s/m", "damper rate")
-    pretension: float = bounded(0, 1e4, 10.0, "N", "tension at rest, which sets the natural length")
-    natural_length: float | None = None  # m; given, it overrides the pretension (the paper's way)
-    two_way: bool = False  # the paper's springs push as well as pull
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.natural_length is not None and not 0 < self.natural_length < 100:
-            raise DesignError(f"ElasticCable.natural_length = {self.natural_length!r} is outside (0, 100] m")
-
-
-@dataclass(frozen=True)
-class StiffCable(Checked):
-    """The cables the drives wind."""
-
-    stiffness: float = bounded(0, 1e6, 2e4, "N/m", "spring rate", open_low=True)
-    damping: float = bounded(0, 1e4, 20.0, "N s/m", "damper rate")
-    max_pull: float = bounded(0, 0.9, 0.45, "", "deepest commanded pull, as a part of the cable's rest length",
-                              open_low=True)
-
-
-@dataclass(frozen=True)
-class Drive(Checked):
-    """A winch drive: brushless motor, rotor angle sensor, gear, spool, and its angle controller."""
-
-    spool_radius: float = bounded(1e-4, 1, 0.003, "m", "radius of the spool")
-    gear_ratio: float = bounded(1, 1e4, 19.0, "", "rotor turns a spool turn")
-    gear_efficiency: float = bounded(0.05, 1, 0.81, "", "part of the power that passes the gear")
-    backlash: float = bounded(0, 1, 0.0279, "rad", "play at the spool")
-    resistance: float = bounded(1e-3, 1e4, 5.3, "ohm", "winding")
-    torque_constant: float = bounded(1e-5, 10, 9.32e-3, "N m/A", "also the back-emf constant in V s/rad")
-    rotor_inertia: float = bounded(1e-10, 1, 0.85e-7, "kg m^2", "motor's rotor")
-    friction_current: float = bounded(0, 100, 0.0, "A", "current that turns the unloaded rotor")
-    voltage_limit: float = bounded(0, 1e3, 11.62, "V", "largest voltage of the controller", open_low=True)
-    current_limit: float = bounded(0, 1e3, 1.72, "A", "largest current of the controller", open_low=True)
-    speed_limit: float = bounded(0, 1e5, 1246.2, "rad/s", "largest rotor speed (11900 rpm)", open_low=True)
-    position_gain: float = bounded(0, 1e3, 1.25, "V/rad", "controller: voltage a radian of rotor error", open_low=True)
-    velocity_gain: float = bounded(0, 10, 0.0, "V s/rad", "controller: voltage taken off a rad/s of rotor speed")
-
-
-@dataclass(frozen=True)
-class Payload(Checked):
-    """A ball in the middle, hung on one elastic cable from every rod's mid-point."""
-
-    mass: float = bounded(0, 100, 0.5, "kg", "payload", open_low=True)
-    radius: float = bounded(1e-3, 10, 0.1, "m", "ball; the cables end on its surface")
-    stiffness: float = bounded(0, 1e6, 120.0, "N/m", "spring rate", open_low=True)
-    damping: float = bounded(0, 1e4, 5.0, "N s/m", "damper rate")
-    pretension: float = bounded(0, 1e4, 4.0, "N", "tension at rest")
-    natural_length: float | None = None  # m; given, it overrides the pretension
-    two_way: bool = False
+if TYPE_CHECKING:
+    from .flexure.pin import RodPin
 
 
 @dataclass(frozen=True)
@@ -148,6 +33,7 @@ class RobotDesign:
     stiff_cable: StiffCable = StiffCable()
     drive: Drive = Drive()
     payload: Payload | None = None
+    flexure: RodFlexure | None = None
     attachment_radius: float = bounded(0, 0.1, 0.004, "m", "cables are tied this far from the rod's axis")
     spin_damping: float = bounded(0, 1, 1e-4, "N m s/rad", "resists a rod's spin about its own axis")
     friction: float = bounded(0, 10, 0.8, "", "Coulomb coefficient, feet and rods against ground and each other")
@@ -178,6 +64,23 @@ class RobotDesign:
                 f"({self.payload_natural_length:.4g} m); lower the pretension or the radius, or raise the stiffness"
             )
 
+        self._check_flexures()
+
+    def _check_flexures(self) -> None:
+        """Refuse rods that the prestress would buckle."""
+        if self.flexure is None:
+            return
+        compression = self.rod_compressions
+        for rod in self.flexible_rods.tolist():
+            limit = self.buckling_load(rod)
+            if compression[rod] >= limit:
+                a, b = self.structure.rods[rod] + 1
+                raise DesignError(
+                    f"RodFlexure: the prestress compresses rod {a}-{b} by {compression[rod]:.4g} N, over the "
+                    f"{limit:.4g} N at which its {self.flexure.hinge} buckles; thicken the hinge (thickness = "
+                    f"{self.flexure.thickness:g} m) or lower ElasticCable.pretension"
+                )
+
     @property
     def standing(self) -> Structure:
         """The structure at rest: form-found, or as given."""
@@ -192,6 +95,53 @@ class RobotDesign:
     def rod(self, index: int) -> Rod:
         """The kind of rod at this index."""
         return self.active_rod if index in self.active_rods else self.passive_rod
+
+    @property
+    def flexible_rods(self) -> IntArray:
+        """Rods split by a flexure: (f,) indices, ascending."""
+        every = np.arange(len(self.structure.rods))
+        kinds = {"all": every, "active": self.active_rods, "passive": np.setdiff1d(every, self.active_rods)}
+        return kinds[self.flexure.rods] if self.flexure else every[:0]
+
+    @property
+    def rod_compressions(self) -> FloatArray:
+        """(r,) force along each rod at rest, positive in compression [N]."""
+        nodes, cables = self.standing.nodes, self.standing.cables
+        span = nodes[cables[:, 1]] - nodes[cables[:, 0]]
+        lengths = np.linalg.norm(span, axis=1)
+        stretch = lengths - 2 * self.attachment_radius - self.cable_natural_lengths
+        pull = (self.elastic_cable.stiffness * stretch / lengths)[:, None] * span
+        forces = np.zeros_like(nodes)
+        np.add.at(forces, cables[:, 0], pull)
+        np.add.at(forces, cables[:, 1], -pull)
+        first, last = self.standing.rods.T
+        along = (nodes[last] - nodes[first]) / self.standing.rod_lengths[:, None]
+        return ((forces[first] - forces[last]) * along).sum(axis=1) / 2
+
+    def half_length(self, rod: int) -> float:
+        """Of the tube on either side of a split rod's hinge [m]. Raises DesignError when the hinge fills the rod."""
+        assert self.flexure is not None
+        half = (float(self.standing.rod_lengths[rod]) - self.flexure.length) / 2
+        if half <= 0:
+            raise DesignError(f"RodFlexure.length = {self.flexure.length!r} is outside (0, {self.length:g}) m: "
+                              "the hinge is longer than the rod")  # fmt: skip
+        return half
+
+    def buckling_load(self, rod: int) -> float:
+        """Compression under which a split rod bends out of line [N]."""
+        from .flexure.buckling import buckling_load
+
+        assert self.flexure is not None
+        half = self.half_length(rod)
+        return buckling_load(self.flexure.geometry(), half, half)
+
+    def rod_pin(self, rod: int) -> RodPin:
+        """The pin and the torsion spring that stand for a split rod's hinge."""
+        from .flexure.pin import rod_pin
+
+        assert self.flexure is not None
+        half = self.half_length(rod)
+        return rod_pin(self.flexure.geometry(), half, half, self.flexure.max_angle)
 
     @property
     def cable_natural_lengths(self) -> FloatArray:
@@ -248,4 +198,9 @@ def paper_design() -> RobotDesign:
     )
 
 
-PRESETS = {"six_rod": RobotDesign, "paper": paper_design}
+def flexible_design() -> RobotDesign:
+    """The six-rod robot with its three passive rods split by leaf springs."""
+    return RobotDesign(name="six_rod_flexible", flexure=RodFlexure())
+
+
+PRESETS = {"six_rod": RobotDesign, "paper": paper_design, "six_rod_flexible": flexible_design}

@@ -6,6 +6,7 @@
     [elastic_cable]
     stiffness = 400.0             # SI units, named as the fields of tensegym.design
     [payload]                     # a section makes one; leave it out for none
+    [flexure]                     # likewise: rods split by a flexure hinge
 """
 
 from __future__ import annotations
@@ -19,8 +20,9 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from .design import PRESETS, Drive, ElasticCable, Payload, RobotDesign, Rod, StiffCable
+from .design import PRESETS, RobotDesign
 from .errors import DesignError
+from .parameters import Drive, ElasticCable, Payload, Rod, RodFlexure, StiffCable
 from .structure import Structure, six_rod
 
 _GROUPS = {
@@ -30,6 +32,7 @@ _GROUPS = {
     "stiff_cable": StiffCable,
     "drive": Drive,
     "payload": Payload,
+    "flexure": RodFlexure,
 }
 _MEMBERS = ("rods", "cables", "stiff_cables")
 

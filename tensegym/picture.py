@@ -25,11 +25,11 @@ def tension_colour(tension: float) -> tuple[int, int, int]:
 
 def cable_ends_in_world(robot: TensegrityRobot) -> FloatArray:
     """(c, 2, 3) end points of every cable [m], now."""
-    poses = robot.poses_in_world
-    arms, directions = np.empty((len(robot.lengths), 2, 3)), np.empty((len(robot.lengths), 3))
-    lengths = np.empty_like(robot.lengths)
-    kernel.cable_geometry(poses, robot.cables.ends, robot.cables.params, arms, directions, lengths)
-    return poses[robot.cables.ends, :3] + arms
+    count = len(robot.lengths)
+    ends, points = robot.cables.ends[:count].ravel(), robot.cables.params[:count, :6].reshape(-1, 3)
+    out = np.empty((2 * count, 3))
+    kernel.points_in_world(robot.poses_in_world, ends, points, out)
+    return out.reshape(count, 2, 3)
 
 
 def render(robot: TensegrityRobot, width: int = 480, height: int = 360, yaw: float = 0.8) -> NDArray[np.uint8]:

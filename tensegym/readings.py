@@ -9,6 +9,18 @@ import numpy as np
 from numba import njit
 
 from .cable_forces import STIFFNESS, TWO_WAY, cable_geometry, points_in_world, rotation_matrix
+from .rotation import angular_velocity
+
+
+@njit(cache=True)
+def velocities_between(last_poses, poses, dt):
+    """(b, 6) linear and angular velocities that took ``last_poses`` (b, 7) to ``poses`` in dt [s]."""
+    out = np.empty((len(poses), 6))
+    for b in range(len(poses)):
+        for i in range(3):
+            out[b, i] = (poses[b, i] - last_poses[b, i]) / dt
+        angular_velocity(poses[b], last_poses[b], dt, out[b, 3:])
+    return out
 
 
 @njit(cache=True)
@@ -42,8 +54,8 @@ def mechanical_energy(poses, velocities, masses, inertias, gravity, ends, cables
             kinetic += 0.5 * inertias[b, i] * spin * spin
         potential += masses[b] * gravity * poses[b, 2]
     count = len(ends)
-    arms, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
-    cable_geometry(poses, ends, cables, arms, directions, lengths)
+    turns, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
+    cable_geometry(poses, ends, cables, turns, directions, lengths)
     for c in range(count):
         stretch = lengths[c] - natural[c]
         if stretch > 0 or cables[c, TWO_WAY] == 1:

@@ -10,6 +10,7 @@ from types import TracebackType
 from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
 from . import cable_forces as kernel
@@ -19,7 +20,8 @@ from .cables import CableArrays, cable_arrays, explicit_step_limit
 from .design import RobotDesign
 from .errors import DesignError, SimulationError
 from .faces import Faces, hull_faces, resting_rotation
-from .readings import mechanical_energy, nodes_in_world
+from .pins import AXIS, second_poses
+from .readings import mechanical_energy, nodes_in_world, velocities_between
 from .rotation import step_back
 from .structure import FloatArray
 from .urdf_model import rod_files, urdf_files
@@ -59,8 +61,9 @@ class Account:
 class TensegrityRobot:
     """A design in a PyBullet world, with its cables and drives.
 
-    Rows of per-body arrays are the rods in their order, then the payload. Rows of per-cable arrays are the elastic
-    cables, the stiff cables, the payload's cables. A context manager; `close` frees the physics client.
+    Rows of per-body arrays are the rods in their order (of split rods the first halves), then the payload, then the
+    second halves. Rows of per-cable arrays are the elastic cables, the stiff cables, the payload's cables. A context
+    manager; `close` frees the physics client.
 
     dt is the physics time step [s]. ``integrator`` picks explicit or linearly implicit cable forces; "auto" takes
     explicit ones where dt is within their stability limit. Raises DesignError for a dt no integrator holds.
@@ -86,14 +89,16 @@ class TensegrityRobot:
             self.world.add_ground(design.friction)
         self._pristine = self.world.save()
 
-        cables, drives = len(self.cables.ends), len(design.standing.stiff_cables)
+        cables, drives = self.cables.first_flexure, len(design.standing.stiff_cables)
         self.drives = np.zeros((drives, drive_kernel.STATE_SIZE))
-        self.lengths, self.rates, self.tensions = np.zeros(cables), np.zeros(cables), np.zeros(cables)
-        self.natural_lengths = self.cables.natural.copy()
+        self._springs = np.zeros((4, len(self.cables.ends)))
+        self._springs[3] = self.cables.natural
+        self.lengths, self.rates, self.tensions, self.natural_lengths = self._springs[:, :cables]
+        self.flexure_angles, self.flexure_moments = self._springs[0, cables:], self._springs[2, cables:]
         self._last_poses = np.zeros_like(self.world.poses)
         self._foot_positions = np.zeros((len(design.standing.nodes), 3))
         self._account = np.zeros(kernel.ACCOUNT_SIZE)
-        self._wrenches = np.zeros((len(self.world.bodies), 6))
+        self._wrenches = np.zeros((len(self.world.poses), 6))
         self._drive_constants = drive_kernel.drive_constants(design.drive)
         self.time = 0.0
         self.reset()
@@ -111,7 +116,7 @@ class TensegrityRobot:
                 else:
                     paths[name] = Path(folder) / name
                     paths[name].write_text(text)
-            for name, pose in zip(names, poses, strict=True):
+            for name, pose in zip(names, poses[: len(names)], strict=True):
                 # far above the ground, so that the pristine state has no contacts
                 self.world.load(paths[name], [pose[0], pose[1], pose[2] + 10, *pose[3:]], design.friction)
 
@@ -148,33 +153,41 @@ class TensegrityRobot:
     def reset_rotated(self, rotation: Rotation, velocities: FloatArray | None = None) -> None:
         """Start with the standing structure rotated about its centre of mass, lowest foot touching z = 0.
 
-        velocities (b, 6): linear [m/s] and angular [rad/s] of every body; at rest by default.
+        velocities (b, 6): linear [m/s] and angular [rad/s] of every body, halves as their pin allows; at rest by
+        default.
         """
-        poses = self.cables.rest_poses.copy()
-        masses = self.cables.masses
+        cables, pins = self.cables, self.cables.pins
+        poses, masses = cables.rest_poses.copy(), cables.masses
         centre = masses @ poses[:, :3] / masses.sum()
         poses[:, :3] = rotation.apply(poses[:, :3] - centre)
         poses[:, 3:] = (rotation * Rotation.from_quat(poses[:, 3:])).as_quat()
         feet = np.empty_like(self._foot_positions)
-        kernel.points_in_world(poses, self.cables.feet, self.cables.foot_points, feet)
-        poses[:, 2] -= (feet[:, 2] - self.cables.foot_radii).min()
+        kernel.points_in_world(poses, cables.feet, cables.foot_points, feet)
+        poses[:, 2] -= (feet[:, 2] - cables.foot_radii).min()
 
+        moving = np.zeros((len(poses), 6)) if velocities is None else velocities
+        axes = rotation.apply(Rotation.from_quat(cables.rest_poses[pins.bodies[:, 0], 3:]).apply(pins.params[:, AXIS]))
+        pin_rates = ((moving[pins.bodies[:, 1], 3:] - moving[pins.bodies[:, 0], 3:]) * axes).sum(axis=1)
+        first = len(self.world.bodies)
         self.world.restore(self._pristine)
-        self.world.place(poses, velocities)
+        self.world.place(poses[:first], moving[:first], rates=pin_rates)
         self.drives[:] = 0.0
-        self.natural_lengths[:] = self.cables.natural
-        self.tensions[:] = 0.0
+        self._springs[:] = 0.0
+        self._springs[3] = cables.natural
         self._account[:] = 0.0
         self.time = 0.0
-        poses = self.world.read_poses()
+        poses = self.poses_in_world
         self._last_poses[:] = poses
         if velocities is not None:
             step_back(self._last_poses, velocities, self.dt)
-        kernel.points_in_world(poses, self.cables.feet, self.cables.foot_points, self._foot_positions)
-        arms, directions = np.empty((len(self.lengths), 2, 3)), np.empty((len(self.lengths), 3))
-        kernel.cable_geometry(poses, self.cables.ends, self.cables.params, arms, directions, self.lengths)
-        self.rates[:] = 0.0
-        kernel.explicit_tensions(self.cables.params, self.lengths, self.rates, self.natural_lengths, self.tensions)
+        kernel.points_in_world(poses, cables.feet, cables.foot_points, self._foot_positions)
+        kernel.start(poses, self.world.angles, cables.ends, cables.params, pins.bodies, pins.params, self._springs)
+        self._springs[0, cables.first_flexure :] -= self.dt * pin_rates  # the rates are those over the last step
+
+    def push(self, velocity: ArrayLike) -> None:
+        """Add a velocity (3,) [m/s] to the whole robot, a disturbance that no cable notices."""
+        self.world.push(velocity)
+        self._last_poses[:, :3] -= self.dt * np.asarray(velocity)
 
     # -- step -----------------------------------------------------------------------------------------------------
 
@@ -190,11 +203,13 @@ class TensegrityRobot:
 
     def step(self, substeps: int = 1) -> None:
         """Advance by ``substeps`` time steps. Raises SimulationError when the simulation has diverged."""
-        world, cables, dt = self.world, self.cables, self.dt
+        world, cables, pins, dt = self.world, self.cables, self.cables.pins, self.dt
+        lengths, rates, tensions, natural = self._springs
         for _ in range(substeps):
+            poses, angles = world.read()
             kernel.substep(
-                world.read_poses(), self._last_poses, cables.ends, cables.params, cables.bodies,
-                self.natural_lengths, self.lengths, self.tensions, self.rates, self._drive_constants, self.drives,
+                poses, angles, self._last_poses, cables.ends, cables.params, cables.bodies, pins.partner, pins.bodies,
+                pins.params, natural, lengths, tensions, rates, self._drive_constants, self.drives,
                 cables.first_driven, cables.feet, cables.foot_points, cables.foot_radii, self._foot_positions,
                 cables.masses, self._account, dt, self.implicit, self._wrenches,
             )  # fmt: skip
@@ -209,29 +224,35 @@ class TensegrityRobot:
     @property
     def poses_in_world(self) -> FloatArray:
         """(b, 7) position [m] and quaternion xyzw of every body, now."""
-        return self.world.read_poses()
+        poses, angles = self.world.read()
+        second_poses(self.cables.pins.bodies, self.cables.pins.params, angles, poses)
+        return poses
+
+    def velocities_in_world(self) -> FloatArray:
+        """(b, 6) linear [m/s] and angular [rad/s] velocity of every body.
+
+        The engine's velocities live half a step before its poses, as in the leapfrog scheme, and so do these.
+        """
+        return velocities_between(self._last_poses, self.poses_in_world, self.dt)
 
     def node_positions_in_world(self) -> FloatArray:
         """(n, 3) [m], now."""
         out = np.empty_like(self._foot_positions)
-        kernel.points_in_world(self.world.read_poses(), self.cables.feet, self.cables.foot_points, out)
+        kernel.points_in_world(self.poses_in_world, self.cables.feet, self.cables.foot_points, out)
         return out
 
     def nodes_in_world(self, velocities: FloatArray | None = None) -> tuple[FloatArray, FloatArray]:
         """Positions (n, 3) [m] and velocities (n, 3) [m/s], now; pass ``velocities`` (b, 6) when read already."""
-        v = self.world.velocities() if velocities is None else velocities
-        return nodes_in_world(self.world.read_poses(), v, self.cables.feet, self.cables.foot_points)
+        v = self.velocities_in_world() if velocities is None else velocities
+        return nodes_in_world(self.poses_in_world, v, self.cables.feet, self.cables.foot_points)
 
     def centre_of_mass_in_world(self) -> FloatArray:
         """(3,) [m], now."""
-        return self.cables.masses @ self.world.read_poses()[:, :3] / self.cables.masses.sum()
+        return self.cables.masses @ self.poses_in_world[:, :3] / self.cables.masses.sum()
 
     def momentum_in_world(self) -> tuple[FloatArray, FloatArray]:
-        """Linear [kg m/s] and angular [kg m^2/s] momentum about the world origin, each (3,).
-
-        The engine's velocities live half a step before its poses, as in the leapfrog scheme, and so does this.
-        """
-        v, poses = self.world.velocities(), self.world.read_poses().copy()
+        """Linear [kg m/s] and angular [kg m^2/s] momentum about the world origin, each (3,), half a step ago."""
+        v, poses = self.velocities_in_world(), self.poses_in_world.copy()
         linear = self.cables.masses[:, None] * v[:, :3]
         middle = poses.copy()
         step_back(middle, v, self.dt / 2)
@@ -240,14 +261,26 @@ class TensegrityRobot:
         return linear.sum(axis=0), (np.cross(poses[:, :3], linear) + spin).sum(axis=0)
 
     def energies(self, velocities: FloatArray | None = None) -> Energies:
-        """Kinetic, gravity and elastic energy, now; pass ``velocities`` (b, 6) when they have been read already."""
+        """Kinetic, gravity and elastic energy, flexures' in it, now; pass ``velocities`` (b, 6) when read already."""
         cables = self.cables
         gravity = self.design.gravity if self.world.ground is not None else 0.0
-        v = self.world.velocities() if velocities is None else velocities
-        return Energies(*mechanical_energy(
-            self.world.read_poses(), v, cables.masses, cables.inertias, gravity, cables.ends, cables.params,
+        v = self.velocities_in_world() if velocities is None else velocities
+        flexures = cables.first_flexure
+        kinetic, potential, elastic = mechanical_energy(
+            self.poses_in_world, v, cables.masses, cables.inertias, gravity, cables.ends[:flexures], cables.params,
             self.natural_lengths,
-        ))  # fmt: skip
+        )  # fmt: skip
+        return Energies(kinetic, potential, elastic + self.flexure_energy())
+
+    def flexure_margins(self) -> FloatArray:
+        """(f,) distance of each flexure to its stops, where its fitted range ends: 1 straight, 0 on a stop."""
+        limit = self.design.flexure.max_angle if self.design.flexure else 1.0
+        return 1 - np.abs(self.world.read()[1]) / limit
+
+    def flexure_energy(self) -> float:
+        """Energy stored in the flexures of split rods [J], now."""
+        stiffness = self.cables.params[self.cables.first_flexure :, kernel.STIFFNESS]
+        return float(0.5 * stiffness @ self.world.angles**2)
 
     def account(self) -> Account:
         """Running totals since the last reset."""

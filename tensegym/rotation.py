@@ -43,7 +43,7 @@ def angular_velocity(pose, last, dt, out):
 
 
 @njit(cache=True)
-def _turned(axis, w, angle_time, out):
+def turned(axis, w, angle_time, out):
     """``axis`` (3,) turned by w * angle_time (Rodrigues)."""
     speed = np.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
     if speed * abs(angle_time) < 1e-12:
@@ -71,10 +71,11 @@ def bullet_gyroscopic_change(w, axis, across, along, dt, out):
 
 
 @njit(cache=True)
-def turn_bodies(poses, last_poses, bodies, dt, wrenches):
+def turn_bodies(poses, last_poses, bodies, partner, dt, wrenches):
     """Replace the moments in ``wrenches`` (b, 6) by those that make Bullet take a leapfrog step under them.
 
-    Adds the damping of the spin about each body's axis first.
+    Adds the damping of the spin about each body's axis first; halves of a pinned rod, those with a ``partner`` (b,) of
+    0 or more, get nothing else here (pins.py).
     """
     w, new, old_middle, middle, axis = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
     change, momentum = np.empty(3), np.empty(3)
@@ -87,15 +88,15 @@ def turn_bodies(poses, last_poses, bodies, dt, wrenches):
         moment = wrenches[b, 3:]
         for i in range(3):
             moment[i] -= bodies[b, SPIN_DAMPING] * spin * axis[i]
-        if across == along:
-            continue  # a ball has no gyroscopic term
-        _turned(axis, w, -0.5 * dt, old_middle)
+        if partner[b] >= 0 or across == along:
+            continue  # pinned, or a ball, which has no gyroscopic term
+        turned(axis, w, -0.5 * dt, old_middle)
         for i in range(3):
             momentum[i] = across * w[i] + (along - across) * spin * old_middle[i] + dt * moment[i]
         on_axis = momentum[0] * axis[0] + momentum[1] * axis[1] + momentum[2] * axis[2]
         new[:] = w
         for _ in range(4):
-            _turned(axis, new, 0.5 * dt, middle)
+            turned(axis, new, 0.5 * dt, middle)
             lag = 1 - (middle[0] * axis[0] + middle[1] * axis[1] + middle[2] * axis[2])
             spin = on_axis / (along + (across - along) * lag)
             for i in range(3):

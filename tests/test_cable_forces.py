@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tensegym import cable_forces as kernel
-from tensegym.cables import cable_arrays, explicit_step_limit
+from tensegym.cables import cable_arrays, explicit_step_limit, mobility_at_rest
 from tensegym.design import ElasticCable, RobotDesign, paper_design
 from tensegym.errors import DesignError
 from tensegym.robot import TensegrityRobot
@@ -32,15 +32,15 @@ def test_implicit_tensions_solve_the_complementarity_problem():
     arrays = cable_arrays(design)
     rng = np.random.default_rng(0)
     count, dt = len(arrays.ends), 2e-3
-    arms, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
-    kernel.cable_geometry(arrays.rest_poses, arrays.ends, arrays.params, arms, directions, lengths)
+    turns, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
+    kernel.cable_geometry(arrays.rest_poses, arrays.ends, arrays.params, turns, directions, lengths)
+    pins = arrays.pins
     natural = arrays.natural + rng.normal(0, 0.02, count)
     rates = rng.normal(0, 0.3, count)
     tensions = np.zeros(count)
-    kernel.implicit_tensions(arrays.rest_poses, arrays.ends, arrays.params, arrays.bodies, arms, directions, lengths,
-                             rates, natural, dt, tensions)  # fmt: skip
-    mobility = np.empty((count, count))
-    kernel.mobility_matrix(arrays.rest_poses, arrays.ends, arrays.bodies, arms, directions, mobility)
+    kernel.implicit_tensions(arrays.rest_poses, arrays.ends, arrays.params, arrays.bodies, pins.partner, pins.bodies,
+                             pins.params, turns, directions, lengths, rates, natural, dt, tensions)  # fmt: skip
+    mobility = mobility_at_rest(arrays)
     k, c = arrays.params[:, kernel.STIFFNESS], arrays.params[:, kernel.DAMPING]
     stretch_after = lengths + dt * rates - natural
     # tension of the law at the end of the step, were these tensions to act during it
@@ -62,13 +62,12 @@ def test_mobility_is_the_effect_of_tensions_on_length_rates():
     poses, count = arrays.rest_poses, len(arrays.ends)
 
     def lengths_at(changed):
-        arms, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
-        kernel.cable_geometry(changed, arrays.ends, arrays.params, arms, directions, lengths)
-        return arms, directions, lengths
+        turns, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
+        kernel.cable_geometry(changed, arrays.ends, arrays.params, turns, directions, lengths)
+        return turns, directions, lengths
 
-    arms, directions, lengths = lengths_at(poses)
-    mobility = np.empty((count, count))
-    kernel.mobility_matrix(poses, arrays.ends, arrays.bodies, arms, directions, mobility)
+    turns, directions, lengths = lengths_at(poses)
+    mobility = mobility_at_rest(arrays)
     np.testing.assert_allclose(mobility, mobility.T)
     assert np.linalg.eigvalsh(mobility)[0] > -1e-9
 
@@ -81,7 +80,7 @@ def test_mobility_is_the_effect_of_tensions_on_length_rates():
         force = sign * directions[cable]
         moved[body, :3] += step * force / arrays.masses[body]
         turn = Rotation.from_quat(poses[body, 3:])
-        torque = turn.inv().apply(np.cross(arms[cable, side], force))
+        torque = turn.inv().apply(-turns[cable, side])
         rotated = Rotation.from_rotvec(step * turn.apply(torque / arrays.inertias[body])) * turn
         moved[body, 3:] = rotated.as_quat()
     change = (lengths_at(moved)[2] - lengths) / step

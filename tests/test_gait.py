@@ -4,7 +4,6 @@ import json
 import math
 
 import numpy as np
-import pybullet
 import pytest
 from scipy.spatial.transform import Rotation
 
@@ -18,20 +17,13 @@ X = np.array([1.0, 0.0])
 TIPPING = Pull((0, 1, 2), 0.4)
 
 
-def push(robot, velocity):
-    """Add a velocity (3,) to every body: no cable notices."""
-    for body, row in zip(robot.world.bodies, robot.world.velocities(), strict=True):
-        moved = (row[:3] + velocity).tolist()
-        pybullet.resetBaseVelocity(body, moved, row[3:].tolist(), physicsClientId=robot.world.client)
-
-
 def slide(friction, seconds=0.5, speed=1.0):
     """Metrics of a settled robot that is given a horizontal speed."""
     with TensegrityRobot(RobotDesign(friction=friction)) as robot:
         robot.reset(0)
         robot.step(2000)
         meter = GaitMeter(robot, X)
-        push(robot, [speed, 0, 0])
+        robot.push([speed, 0, 0])
         for _ in range(round(seconds / 0.05)):
             robot.step(50)
             meter.update()
@@ -52,7 +44,7 @@ def test_speed_is_along_the_wanted_direction_in_rod_lengths_too():
         robot.reset(0)
         robot.step(1000)
         meters = [GaitMeter(robot, np.array([math.cos(a), math.sin(a)])) for a in (0.0, 2.0, math.pi)]
-        push(robot, [1.0, 0, 0])
+        robot.push([1.0, 0, 0])
         robot.step(500)
         ahead, aside, back = (m.metrics() for m in meters)
         assert aside.speed == pytest.approx(math.cos(2.0) * ahead.speed, abs=0.01)
@@ -143,7 +135,7 @@ def test_the_audit_finds_energy_put_in_by_nobody(direction):
                 meter.update()
             assert meter.metrics().audit_passed
             speed = math.sqrt(2 * share * robot.energies().total / robot.design.mass)
-            push(robot, speed * np.array(direction))
+            robot.push(speed * np.array(direction))
             meter.update()
             assert meter.metrics().audit_passed is passes
             assert meter.metrics().audit_excess == pytest.approx(share, abs=0.003)
