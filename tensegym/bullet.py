@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from . import direct_calls
 from .errors import SimulationError
-from .structure import FloatArray
+from .structure import FloatArray, IntArray
 
 
 @contextmanager
@@ -63,15 +64,23 @@ class World:
     robot at rest.
 
     Rows of per-link arrays are the bodies' first links in the order of loading, then the second links in that order.
+
+    `compiled` says that substeps may go past Python (`substeps.run`): by default where that can be done. Raises
+    SimulationError where it is asked for and cannot.
     """
 
-    def __init__(self, dt: float, gravity: float, gui: bool = False) -> None:
+    def __init__(self, dt: float, gravity: float, gui: bool = False, compiled: bool | None = None) -> None:
         if gui and not os.environ.get("DISPLAY"):
             raise SimulationError("no display to open a window on: set DISPLAY, or render to rgb_array instead")
         self.client = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
         if self.client < 0:
             raise SimulationError("PyBullet gave no physics client; close other worlds first")
         self._finalizer = weakref.finalize(self, _disconnect, self.client)
+        can_compile = direct_calls.AVAILABLE and not gui
+        if compiled and not can_compile:
+            raise SimulationError("compiled substeps need a world with no window and a PyBullet with a symbol table: "
+                                  "leave out compiled=True")  # fmt: skip
+        self.compiled = can_compile if compiled is None else compiled
         self.bodies: list[int] = []
         self.pinned: list[int] = []
         """Rows in `bodies` of those with two links."""
@@ -80,6 +89,7 @@ class World:
         self._lines: list[int] = []
         self._pack, self._pack_angles = struct.Struct("0d"), struct.Struct("0d")
         self.poses, self.angles = np.zeros((0, 7)), np.zeros(0)
+        self._numbers, self._pinned_rows = np.zeros(0, dtype=np.int32), np.zeros(0, dtype=int)
         pybullet.setGravity(0, 0, -gravity, physicsClientId=self.client)
         pybullet.setTimeStep(dt, physicsClientId=self.client)
         pybullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=self.client)
@@ -108,6 +118,7 @@ class World:
         self._pack = struct.Struct(f"{7 * len(self.bodies)}d")
         self._pack_angles = struct.Struct(f"{len(self.pinned)}d")
         self._second_links = [self.bodies[row] for row in self.pinned]
+        self._numbers, self._pinned_rows = np.array(self.bodies, dtype=np.int32), np.array(self.pinned, dtype=int)
         return len(self.bodies) - 1
 
     def add_ground(self, friction: float) -> None:
@@ -125,7 +136,7 @@ class World:
         self, poses: FloatArray, velocities: FloatArray, angles: FloatArray | None = None,
         rates: FloatArray | None = None,
     ) -> None:  # fmt: skip
-        """Set pose (b, 7) and velocity (b, 6) linear, angular of every first link; pins' angles and rates, 0 by default.
+        """Set pose (b, 7), velocity (b, 6) linear, angular of every first link, and pins' angles and rates, 0 by default.
         """
         for body, pose, velocity in zip(self.bodies, poses.tolist(), velocities.tolist(), strict=True):
             pybullet.resetBasePositionAndOrientation(body, pose[:3], pose[3:], physicsClientId=self.client)
@@ -151,6 +162,13 @@ class World:
             angles = [pybullet.getJointState(body, 0, client)[0] for body in self._second_links]
             self._pack_angles.pack_into(self.angles.data, 0, *angles)
         return self.poses, self.angles
+
+    @property
+    def engine(self) -> tuple[int, int, IntArray, IntArray, FloatArray, FloatArray]:
+        """Client, number of bodies in it, bodies' numbers, rows of those with two links, poses, angles: what
+        `substeps.run` works on."""
+        total = len(self.bodies) + (self.ground is not None)
+        return self.client, total, self._numbers, self._pinned_rows, self.poses, self.angles
 
     def step(self, wrenches: FloatArray) -> None:
         """Apply force and moment (l, 6) about the links' centres, world axes, and advance one time step.

@@ -231,6 +231,19 @@ def implicit_tensions(poses, ends, cables, bodies, partner, pins, pin_params, tu
 
 
 @njit(cache=True)
+def wrenches_of(ends, turns, directions, tensions, wrenches):
+    """Force and moment (b, 6) on every body about its centre, world axes, by tensions (c,)."""
+    wrenches[:] = 0.0
+    for c in range(len(ends)):
+        for side in range(2):
+            pull = tensions[c] if side == 0 else -tensions[c]
+            body = ends[c, side]
+            for i in range(3):
+                wrenches[body, i] += pull * directions[c, i]
+                wrenches[body, 3 + i] -= tensions[c] * turns[c, side, i]
+
+
+@njit(cache=True)
 def start(poses, angles, ends, cables, pins, pin_params, springs):
     """Set lengths, rates, tensions of ``springs`` (4, c), whose last row is the natural lengths, for a state at rest."""
     count, flexures = len(ends), len(ends) - len(pins)
@@ -242,13 +255,13 @@ def start(poses, angles, ends, cables, pins, pin_params, springs):
 
 
 @njit(cache=True)
-def substep(poses, angles, last_poses, ends, cables, bodies, partner, pins, pin_params, natural, lengths, tensions,
-            rates, drive_constants, drives, first_driven, feet, foot_points, foot_radius, foot_positions, masses,
-            account, dt, implicit, wrenches):  # fmt: skip
+def substep(poses, angles, wrenches, last_poses, ends, cables, bodies, partner, pins, pin_params, natural, lengths,
+            tensions, rates, drive_constants, drives, first_driven, feet, foot_points, foot_radius, foot_positions,
+            masses, account, dt, implicit):  # fmt: skip
     """One kernel a substep: geometry, tensions, wrenches (b, 6) in world axes about body centres, drives, account.
 
-    Everything after ``pin_params`` and before ``dt`` is state and is updated in place, and so are the poses of second
-    halves; ``wrenches`` is written.
+    Everything after ``pin_params`` and before ``dt``, and ``last_poses``, is state and is updated in place, and so are
+    the poses of second halves; ``wrenches`` is written.
     """
     count = len(ends)
     turns, directions = np.empty((count, 2, 3)), np.empty((count, 3))
@@ -266,14 +279,7 @@ def substep(poses, angles, last_poses, ends, cables, bodies, partner, pins, pin_
     else:
         explicit_tensions(cables, lengths, rates, natural, tensions)
 
-    wrenches[:] = 0.0
-    for c in range(count):
-        for side in range(2):
-            pull = tensions[c] if side == 0 else -tensions[c]
-            body = ends[c, side]
-            for i in range(3):
-                wrenches[body, i] += pull * directions[c, i]
-                wrenches[body, 3 + i] -= tensions[c] * turns[c, side, i]
+    wrenches_of(ends, turns, directions, tensions, wrenches)
     turn_bodies(poses, last_poses, bodies, partner, dt, wrenches)
     step_pinned(poses, last_poses, bodies, pins, pin_params, rates[flexures:], dt, wrenches)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,10 +24,12 @@ from .pins import AXIS, second_poses
 from .readings import mechanical_energy, nodes_in_world, velocities_between
 from .rotation import step_back
 from .structure import FloatArray
+from .substeps import run
 from .urdf_model import rod_files, urdf_files
 
 Integrator = Literal["auto", "explicit", "implicit"]
 LEAST_TIME_STEP, LARGEST_TIME_STEP = 1e-6, 4e-3  # s; at 5 ms feet and rods in contact make energy, at 4 ms none did
+_MOST_AT_ONCE = 1000  # compiled substeps, some 20 ms of them, between two looks at signals such as Ctrl-C
 SPEED_BOUND = 50.0  # m/s; nothing on these robots moves so fast unless the integration has diverged
 
 
@@ -67,11 +69,12 @@ class TensegrityRobot:
 
     dt is the physics time step [s]. ``integrator`` picks explicit or linearly implicit cable forces; "auto" takes
     explicit ones where dt is within their stability limit. Raises DesignError for a dt no integrator holds.
+    ``compiled`` picks the substep loop, see World: both give the same bits.
     """
 
     def __init__(
         self, design: RobotDesign | None = None, *, dt: float = 1e-3, ground: bool = True,
-        integrator: Integrator = "auto", gui: bool = False,
+        integrator: Integrator = "auto", gui: bool = False, compiled: bool | None = None,
     ) -> None:  # fmt: skip
         self.design = design = design or RobotDesign()
         if not LEAST_TIME_STEP <= dt <= LARGEST_TIME_STEP:
@@ -83,7 +86,7 @@ class TensegrityRobot:
             raise DesignError(f"dt = {dt:g} s is over the explicit limit of {limit:.3g} s; take integrator='implicit'")
         self.implicit = integrator == "implicit" or (integrator == "auto" and dt > limit)
 
-        self.world = World(dt, design.gravity if ground else 0.0, gui)
+        self.world = World(dt, design.gravity if ground else 0.0, gui, compiled)
         self._load_bodies()
         if ground:
             self.world.add_ground(design.friction)
@@ -100,8 +103,20 @@ class TensegrityRobot:
         self._account = np.zeros(kernel.ACCOUNT_SIZE)
         self._wrenches = np.zeros((len(self.world.poses), 6))
         self._drive_constants = drive_kernel.drive_constants(design.drive)
+        self._kernel_arguments = self._flat()
         self.time = 0.0
         self.reset()
+
+    def _flat(self) -> tuple[Any, ...]:
+        """What the force kernel takes after the wrenches, in its order: arrays that keep their place."""
+        cables, pins = self.cables, self.cables.pins
+        lengths, rates, tensions, natural = self._springs
+        return (
+            self._last_poses, cables.ends, cables.params, cables.bodies, pins.partner, pins.bodies, pins.params,
+            natural, lengths, tensions, rates, self._drive_constants, self.drives, cables.first_driven, cables.feet,
+            cables.foot_points, cables.foot_radii, self._foot_positions, cables.masses, self._account, self.dt,
+            self.implicit,
+        )  # fmt: skip
 
     def _load_bodies(self) -> None:
         design, poses = self.design, self.cables.rest_poses
@@ -203,18 +218,17 @@ class TensegrityRobot:
 
     def step(self, substeps: int = 1) -> None:
         """Advance by ``substeps`` time steps. Raises SimulationError when the simulation has diverged."""
-        world, cables, pins, dt = self.world, self.cables, self.cables.pins, self.dt
-        lengths, rates, tensions, natural = self._springs
-        for _ in range(substeps):
-            poses, angles = world.read()
-            kernel.substep(
-                poses, angles, self._last_poses, cables.ends, cables.params, cables.bodies, pins.partner, pins.bodies,
-                pins.params, natural, lengths, tensions, rates, self._drive_constants, self.drives,
-                cables.first_driven, cables.feet, cables.foot_points, cables.foot_radii, self._foot_positions,
-                cables.masses, self._account, dt, self.implicit, self._wrenches,
-            )  # fmt: skip
-            world.step(self._wrenches)
-        self.time += substeps * dt
+        world, wrenches, arguments = self.world, self._wrenches, self._kernel_arguments
+        if world.compiled:
+            for first in range(0, substeps, _MOST_AT_ONCE):
+                count = min(substeps - first, _MOST_AT_ONCE)
+                if run(count, *world.engine, wrenches, *arguments) < count:
+                    raise SimulationError("the robot's world is closed, or a body is gone from it")
+        else:
+            for _ in range(substeps):
+                kernel.substep(*world.read(), wrenches, *arguments)
+                world.step(wrenches)
+        self.time += substeps * self.dt
         fastest = np.abs(self.rates).max(initial=0.0)
         if not fastest < SPEED_BOUND:
             raise SimulationError(f"diverged at t = {self.time:.4g} s: a cable changes length at {fastest:.3g} m/s")

@@ -1,0 +1,70 @@
+"""The compiled substep loop against the Python calls, which are the reference; and where it cannot work."""
+
+import numpy as np
+import pytest
+
+from tensegym import direct_calls
+from tensegym.design import Payload, RobotDesign, flexible_design
+from tensegym.errors import SimulationError
+from tensegym.robot import TensegrityRobot
+
+needs_symbols = pytest.mark.skipif(not direct_calls.AVAILABLE, reason="this PyBullet has no symbol table")
+
+
+def roll(design: RobotDesign, dt: float, compiled: bool) -> tuple[np.ndarray, ...]:
+    """Half a second of random commands on the ground, feet and rods in contact: the whole state after it."""
+    rng = np.random.default_rng(1)
+    with TensegrityRobot(design, dt=dt, compiled=compiled) as robot:
+        robot.reset(0, 0.3)
+        for _ in range(5):
+            robot.command(rng.uniform(0, 1, len(robot.drives)) * robot.command_limit)
+            robot.step(round(0.1 / dt))
+        account = np.array(list(vars(robot.account()).values()))
+        return (robot.poses_in_world.copy(), robot.velocities_in_world(), robot.tensions.copy(), robot.lengths.copy(),
+                robot.drives.copy(), robot.flexure_angles.copy(), account)  # fmt: skip
+
+
+@needs_symbols
+@pytest.mark.parametrize(
+    ("design", "dt"),
+    [(RobotDesign(), 1e-3), (RobotDesign(payload=Payload()), 2e-3), (flexible_design(), 1e-3)],
+    ids=["explicit", "implicit with payload", "split rods"],
+)
+def test_both_loops_give_the_same_bits(design, dt):
+    for compiled, python in zip(roll(design, dt, True), roll(design, dt, False), strict=True):
+        np.testing.assert_array_equal(compiled, python)
+
+
+@needs_symbols
+def test_a_closed_world_is_an_error_and_not_a_crash():
+    robot = TensegrityRobot(compiled=True)
+    robot.close()
+    with pytest.raises(SimulationError, match="closed"):
+        robot.step()
+
+
+@needs_symbols
+def test_a_handle_is_given_only_for_the_client_meant():
+    with TensegrityRobot(compiled=True) as robot:
+        client, total, *_ = robot.world.engine
+        assert direct_calls.client_handle(client, total) != 0
+        assert direct_calls.client_handle(client, total + 1) == 0  # another world, or a body gone
+        for nobody in (client + 1, -1, 10**6):
+            assert direct_calls.client_handle(nobody, total) == 0
+
+
+def test_without_the_symbols_python_does_it(monkeypatch):
+    monkeypatch.setattr(direct_calls, "AVAILABLE", False)
+    with TensegrityRobot() as robot:
+        assert not robot.world.compiled
+        robot.step(3)
+        assert robot.time == pytest.approx(3e-3)
+    with pytest.raises(SimulationError, match="symbol table"):
+        TensegrityRobot(compiled=True)
+
+
+def test_another_file_format_is_refused(tmp_path):
+    file = tmp_path / "engine.so"
+    file.write_bytes(b"MZ" + bytes(100))
+    with pytest.raises(ValueError, match="ELF"):
+        direct_calls.local_symbols(file, ("getPhysicsClient",))
