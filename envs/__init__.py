@@ -6,12 +6,15 @@ if not __name__.startswith("tensegym."):
 from gymnasium.envs.registration import register, registry
 
 ROLLING = "tensegym/SixRodRolling-v0"
+FLEXIBLE_ROLLING = "tensegym/FlexibleSixRodRolling-v0"
 EPISODE_SECONDS = 20.0
 CONTROL_PERIOD = 0.4
 
-if ROLLING not in registry:
-    register(
-        id=ROLLING,
-        entry_point="tensegym.envs.rolling:RollingEnv",
-        max_episode_steps=round(EPISODE_SECONDS / CONTROL_PERIOD),
-    )
+for name, design in ((ROLLING, "six_rod"), (FLEXIBLE_ROLLING, "six_rod_flexible")):
+    if name not in registry:
+        register(
+            id=name,
+            entry_point="tensegym.envs.rolling:RollingEnv",
+            kwargs={"design": design},
+            max_episode_steps=round(EPISODE_SECONDS / CONTROL_PERIOD),
+        )

@@ -245,7 +245,7 @@ def wrenches_of(ends, turns, directions, tensions, wrenches):
 
 @njit(cache=True)
 def start(poses, angles, ends, cables, pins, pin_params, springs):
-    """Set lengths, rates, tensions of ``springs`` (4, c), whose last row is the natural lengths, for a state at rest."""
+    """Set lengths, rates, tensions of ``springs`` (4, c) for a state at rest; its last row is the natural lengths."""
     count, flexures = len(ends), len(ends) - len(pins)
     turns, directions = np.empty((count, 2, 3)), np.empty((count, 3))
     cable_geometry(poses, ends[:flexures], cables, turns, directions, springs[0])

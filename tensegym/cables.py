@@ -22,7 +22,7 @@ class CableArrays:
     ends (c, 2) bodies; params (c, 9) rows of the kernel's cable parameters; natural (c,) at rest [m], [rad] for
     flexures; bodies (b, 4) rows of the kernel's body parameters; rest_poses (b, 7); masses (b,) [kg]; inertias (b, 3)
     principal [kg m^2]; feet (n,) body of each node; foot_points (n, 3) in the body's frame [m]; foot_radii (n,) [m];
-    first_driven the row of the first stiff cable.
+    first_driven the row of the first stiff cable, driven how many there are.
     """
 
     ends: IntArray
@@ -36,6 +36,7 @@ class CableArrays:
     foot_points: FloatArray
     foot_radii: FloatArray
     first_driven: int
+    driven: int
     pins: PinArrays
 
     @property
@@ -140,6 +141,7 @@ def cable_arrays(design: RobotDesign) -> CableArrays:
         foot_points=local_of_node,
         foot_radii=foot_radii,
         first_driven=len(structure.cables),
+        driven=len(structure.stiff_cables),
         pins=PinArrays(
             np.array(pins, dtype=np.int64).reshape(-1, 2), np.array(pin_params, dtype=float).reshape(-1, 9), partner
         ),

@@ -19,6 +19,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "roll": ("tensegym.train.evaluate:Roll", "watch the shipped policy roll: table, metrics.json, gait.png, roll.mp4"),
     "step": ("tensegym.commands.step:Step", "tip from one face onto the next; --all-faces: which pull tips which face"),
     "simulate": ("tensegym.commands.simulate:Simulate", "drive-angle commands in, the whole motion out, as CSV"),
+    "modes": ("tensegym.commands.modes:Modes", "free modes of a design, and the loads of its rods"),
     "validate": ("tensegym.commands.validate:Validate", "physics against closed forms: expected, measured, tolerance"),
     "train": ("tensegym.train.ppo:Train", "train a rolling policy with PPO; resumable"),
     "evaluate": ("tensegym.train.evaluate:Evaluate", "judge a policy and the baselines over many seeds"),

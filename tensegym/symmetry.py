@@ -32,6 +32,7 @@ def symmetries(design: RobotDesign, tolerance: float = 1e-6) -> list[Symmetry]:
     """The rotation group of a design, identity first; for the six-rod robot with three active rods it has order 3."""
     structure = design.standing
     masses = np.array([design.rod(i).mass for i in range(len(structure.rods))])
+    split = np.isin(np.arange(len(structure.rods)), design.flexible_rods)
     weights = np.empty(len(structure.nodes))
     weights[structure.rods] = (masses / 2)[:, None]
     nodes = structure.nodes - weights @ structure.nodes / weights.sum()
@@ -47,7 +48,7 @@ def symmetries(design: RobotDesign, tolerance: float = 1e-6) -> list[Symmetry]:
         if distances.min(axis=1).max() > tolerance or len(set(perm)) < len(perm):
             continue
         symmetry = _induced(design, perm, turn)
-        if symmetry and np.allclose(masses[symmetry.rods], masses):
+        if symmetry and np.allclose(masses[symmetry.rods], masses) and (split[symmetry.rods] == split).all():
             found.append(symmetry)
     return sorted(found, key=lambda s: (not np.array_equal(s.nodes, np.arange(len(nodes))), tuple(s.nodes)))
 

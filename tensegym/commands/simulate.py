@@ -29,7 +29,7 @@ class Simulate:
     out: Path
     """CSV to write: nodes, rod quaternions, tensions, drives, energies."""
     design: str = "six_rod"
-    """A preset (six_rod, paper) or a TOML file."""
+    """A preset (six_rod, six_rod_flexible, paper) or a TOML file."""
     start: str = ""
     """Start pose: a face by its nodes such as 3-5-12, paper-1 or paper-2; default: the first face."""
     heading: float = 0.0

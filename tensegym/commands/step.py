@@ -40,7 +40,7 @@ class Step:
     """Instead: try every choice of one to three drives from every face, at --depth and at the design's deepest pull;
     writes tips.json, the walker's table."""
     design: str = "six_rod"
-    """A preset (six_rod, paper) or a TOML file."""
+    """A preset (six_rod, six_rod_flexible, paper) or a TOML file."""
     out: Path = Path("step")
     """Folder to write in."""
     dt: float = 2e-3
