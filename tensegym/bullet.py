@@ -136,8 +136,7 @@ class World:
         self, poses: FloatArray, velocities: FloatArray, angles: FloatArray | None = None,
         rates: FloatArray | None = None,
     ) -> None:  # fmt: skip
-        """Set pose (b, 7), velocity (b, 6) linear, angular of every first link, and pins' angles and rates, 0 by default.
-        """
+        """Set every first link's pose (b, 7) and velocity (b, 6) linear, angular; pins' angles and rates, else 0."""
         for body, pose, velocity in zip(self.bodies, poses.tolist(), velocities.tolist(), strict=True):
             pybullet.resetBasePositionAndOrientation(body, pose[:3], pose[3:], physicsClientId=self.client)
             pybullet.resetBaseVelocity(body, velocity[:3], velocity[3:], physicsClientId=self.client)

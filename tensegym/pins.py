@@ -200,7 +200,7 @@ def second_twist(geometry, u, out):
 def _spin_momentum(body, z, w, half_step, out):
     """Angular momentum at the half step from the own axis z now."""
     middle = np.empty(3)
-    turned(z, w, half_step, middle)
+    middle[:] = turned(z, w, half_step)
     across, along = 1 / body[INVERSE_TRANSVERSE], 1 / body[INVERSE_AXIAL]
     part = (along - across) * _dot(w, z)
     for i in range(3):
@@ -238,7 +238,7 @@ def step_pinned(poses, last_poses, bodies, pins, params, rates, dt, wrenches):
         goal[:] = 0.0
         for side in range(2):
             row = pins[p, side]
-            angular_velocity(poses[row], last_poses[row], dt, w2)
+            w2[:] = angular_velocity(poses[row], last_poses[row], dt)
             _spin_momentum(bodies[row], z1 if side == 0 else z2, w2, -0.5 * dt, spin)
             for i in range(3):
                 v[i] = (poses[row, i] - last_poses[row, i]) / dt
@@ -251,8 +251,8 @@ def step_pinned(poses, last_poses, bodies, pins, params, rates, dt, wrenches):
         u[:] = old
         for _ in range(_MOST_ITERATIONS):
             _composed(u[3:6], axis, u[6], dt, w2)
-            turned(r1, u[3:6], dt, moved)
-            turned(r2, w2, dt, back)
+            moved[:] = turned(r1, u[3:6], dt)
+            back[:] = turned(r2, w2, dt)
             got[:] = 0.0
             for i in range(3):
                 v[i] = m1 * u[i]

@@ -19,7 +19,7 @@ def velocities_between(last_poses, poses, dt):
     for b in range(len(poses)):
         for i in range(3):
             out[b, i] = (poses[b, i] - last_poses[b, i]) / dt
-        angular_velocity(poses[b], last_poses[b], dt, out[b, 3:])
+        out[b, 3:] = angular_velocity(poses[b], last_poses[b], dt)
     return out
 
 

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from tensegym.design import RobotDesign
 from tensegym.robot import TensegrityRobot
-from tensegym.rotation import angular_velocity, bullet_gyroscopic_change
+from tensegym.rotation import angular_velocity, arcsine_ratio, bullet_gyroscopic_change, sine_ratios, turned
 from tensegym.structure import Structure, six_rod
 
 vectors = st.tuples(*[st.floats(-20, 20)] * 3).map(np.array)
@@ -21,8 +21,7 @@ def test_closed_form_of_the_gyroscopic_step(seed, w):
     inertia, dt = np.array([0.02, 0.02, 5e-6]), 1e-3
     local = turn.inv().apply(w)
     expected = turn.apply(-dt * np.cross(local, inertia * local) / inertia)
-    out = np.empty(3)
-    bullet_gyroscopic_change(w, turn.as_matrix()[:, 2].copy(), 0.02, 5e-6, dt, out)
+    out = bullet_gyroscopic_change(w, turn.as_matrix()[:, 2].copy(), 0.02, 5e-6, dt)
     np.testing.assert_allclose(out, expected, atol=1e-9)
 
 
@@ -32,9 +31,24 @@ def test_angular_velocity_from_two_orientations(seed, w):
     turn = Rotation.random(random_state=np.random.default_rng(seed))
     first = np.r_[0, 0, 0, turn.as_quat()]
     second = np.r_[0, 0, 0, (Rotation.from_rotvec(1e-3 * w) * turn).as_quat()]
-    out = np.empty(3)
-    angular_velocity(second, first, 1e-3, out)
+    out = angular_velocity(second, first, 1e-3)
     np.testing.assert_allclose(out, w, atol=1e-9)
+
+
+def test_series_of_small_angles_are_exact_to_rounding():
+    for angle in np.geomspace(1e-6, 0.0999999, 40):
+        sine, versine = sine_ratios(angle**2)
+        assert sine == pytest.approx(np.sin(angle) / angle, rel=3e-16, abs=0)
+        assert versine == pytest.approx(2 * (np.sin(angle / 2) / angle) ** 2, rel=6e-16, abs=0)
+        assert arcsine_ratio(angle**2) == pytest.approx(np.arcsin(angle) / angle, rel=5e-16, abs=0)
+    assert sine_ratios(0.0) == (1.0, 0.5)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 2**31), vectors, st.sampled_from([1e-3, -1e-3, 0.2]))
+def test_turned_is_the_rotation_by_w_times_time(seed, w, time):
+    axis = Rotation.random(random_state=np.random.default_rng(seed)).as_matrix()[:, 2].copy()
+    np.testing.assert_allclose(turned(axis, w, time), Rotation.from_rotvec(w * time).apply(axis), atol=2e-15)
 
 
 @pytest.mark.parametrize("rate", [(8.0, 0.0, 8.0), (3.0, 2.0, 20.0)])
