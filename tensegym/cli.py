@@ -23,6 +23,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "validate": ("tensegym.commands.validate:Validate", "physics against closed forms: expected, measured, tolerance"),
     "train": ("tensegym.train.ppo:Train", "train a rolling policy with PPO; resumable"),
     "evaluate": ("tensegym.train.evaluate:Evaluate", "judge a policy and the baselines over many seeds"),
+    "design": ("tensegym.commands.design:COMMANDS", "search for a design that makes a motion: run, resume, status"),
     "flexure": ("tensegym.flexure.commands:COMMANDS", "flexible joints: table, curves, fit, track, solve"),
 }
 
@@ -67,7 +68,8 @@ def run(argv: list[str], commands: dict[str, tuple[str, str]] = COMMANDS, progra
     except ModuleNotFoundError as error:
         if str(error.name).startswith("tensegym"):
             raise
-        print(f"{program} {name}: error: {error.name} is not installed; install tensegym[train]", file=sys.stderr)
+        needed = "install tensegym[train,search]"
+        print(f"{program} {name}: error: {error.name} is not installed; {needed}", file=sys.stderr)
         return 2
     except BrokenPipeError:
         raise

@@ -36,13 +36,13 @@ def symmetries(design: RobotDesign, tolerance: float = 1e-6) -> list[Symmetry]:
     weights = np.empty(len(structure.nodes))
     weights[structure.rods] = (masses / 2)[:, None]
     nodes = structure.nodes - weights @ structure.nodes / weights.sum()
-    a, b, c = _independent_triple(nodes)
+    triple = list(_independent_triple(nodes))
+    images = np.array(list(permutations(range(len(nodes)), 3)))
+    products = nodes @ nodes.T
+    same = np.isclose(products[images[:, :, None], images[:, None]], products[np.ix_(triple, triple)], atol=tolerance)
     found = []
-    for images in permutations(range(len(nodes)), 3):
-        target = nodes[list(images)]
-        if not np.allclose(target @ target.T, nodes[[a, b, c]] @ nodes[[a, b, c]].T, atol=tolerance):
-            continue
-        turn = Rotation.align_vectors(target, nodes[[a, b, c]])[0].as_matrix()
+    for target in images[same.all(axis=(1, 2))]:
+        turn = Rotation.align_vectors(nodes[target], nodes[triple])[0].as_matrix()
         distances = np.linalg.norm((nodes @ turn.T)[:, None] - nodes, axis=2)
         perm = distances.argmin(axis=1)
         if distances.min(axis=1).max() > tolerance or len(set(perm)) < len(perm):

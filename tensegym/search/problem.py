@@ -1,0 +1,168 @@
+"""A search as written in a TOML file: task, start design, controller, space, and how to search.
+
+    task = "carry"                                          # or a [task] table, see tensegym.search.task
+    [design]                                                # where the search begins, as a design file
+    [controller]                                            # parameters of the pattern generator
+    [space]
+    "design.elastic_cable.stiffness" = {low = 200.0, high = 800.0, log = true}
+    "controller.feedback" = {spread = 1.0}                  # every entry, this far about its start
+    "design.payload.two_way" = {choices = [false, true]}
+    [search]
+    sampler = "cmaes"                                       # cmaes, tpe, nsga2, random
+    objectives = ["max speed_lps"]                          # several with nsga2, tpe or random
+    constraints = ["slip_share <= 0.3"]
+"""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import asdict, dataclass, fields, is_dataclass, replace
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from tensegym.control.cpg import Cpg
+from tensegym.design import bounded, check_ranges
+from tensegym.design_file import design_from_dict, design_to_dict
+from tensegym.errors import DesignError, InputError, StructureError
+
+from .measure import Bound, Objective
+from .space import Space, Tables, space_from
+from .task import Task, task_from
+
+_TABLES = ("task", "design", "controller", "space", "search")
+SAMPLERS = ("cmaes", "tpe", "nsga2", "random")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to search. batch: trials asked for at a time, a generation of cmaes and nsga2.
+
+    fresh_starts: every batch is tried from other start faces and headings, so that no trial is fitted to a few.
+    stop_above: a trial whose loss half way is above this quantile of those before it is stopped.
+    """
+
+    sampler: str = "cmaes"
+    objectives: tuple[Objective, ...] = (Objective("speed_lps", True),)
+    constraints: tuple[Bound, ...] = ()
+    seed: int = bounded(0, 2**31, 0, "", "of the sampler and the episodes")
+    batch: int = bounded(1, 10_000, 16, "", "trials asked for at a time")
+    episodes: int = bounded(1, 1000, 4, "", "episodes of a trial")
+    fresh_starts: bool = True
+    stop_above: float = bounded(0, 1, 0.6, "", "quantile of the losses half way; 1 stops none")
+    sigma: float = bounded(1e-4, 1, 1 / 6, "", "first step of cmaes, as a part of the ranges")
+
+    def __post_init__(self) -> None:
+        check_ranges(self)
+        for name in ("seed", "batch", "episodes"):
+            if not isinstance(getattr(self, name), int):
+                raise DesignError(f"Settings.{name} = {getattr(self, name)!r} must be a whole number")
+        if self.sampler not in SAMPLERS:
+            raise DesignError(f"Settings.sampler = {self.sampler!r} is not one of {', '.join(SAMPLERS)}")
+        if not self.objectives or (self.sampler == "cmaes" and len(self.objectives) > 1):
+            raise DesignError(f"Settings.objectives: {len(self.objectives)} are given; cmaes takes one, others any")
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One search. text: the file it was read from, which is what identifies it."""
+
+    task: Task
+    space: Space
+    settings: Settings
+    text: str
+
+    def with_settings(self, **changes: Any) -> Problem:
+        """The same search with some settings replaced; None leaves one as it is."""
+        changes = {k: v for k, v in changes.items() if v is not None}
+        if not changes:
+            return self
+        data = tomllib.loads(self.text)
+        data["search"] = data.get("search", {}) | changes
+        return problem_from(tomli_w.dumps(data), "the task file with the options given")
+
+    def losses(self, metrics: dict[str, float]) -> list[float]:
+        """By how much each constraint is broken; 0 or less is kept. The first is that no episode is disqualified."""
+        return [1.0 - metrics["sound"], *(bound.violation(metrics) for bound in self.settings.constraints)]
+
+
+def load_problem(name: str) -> Problem:
+    """A shipped task file by name (carry, ...) or one by path. Raises InputError or FileNotFoundError."""
+    shipped = resources.files("tensegym.search") / "tasks"
+    names = sorted(p.name.removesuffix(".toml") for p in shipped.iterdir() if p.name.endswith(".toml"))
+    if name in names:
+        return problem_from((shipped / f"{name}.toml").read_text(), name)
+    if not Path(name).is_file():
+        raise FileNotFoundError(f"no task file {name}; give a path, or one of {', '.join(names)}")
+    try:
+        return problem_from(Path(name).read_text(), name)
+    except UnicodeDecodeError as error:
+        raise InputError(f"{name} is not TOML: {error}") from error
+
+
+def problem_from(text: str, name: str) -> Problem:
+    """Parse a task file. Raises InputError naming it."""
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{name} is not TOML: {error}") from error
+    unknown = set(data) - set(_TABLES)
+    if unknown:
+        raise InputError(f"{name}: unknown table {sorted(unknown)[0]!r}; one of {', '.join(_TABLES)}")
+    try:
+        task = task_from(data.get("task"))
+        tables = _start(task, data)
+        space = space_from(data.get("space"), tables, _whole(tables))
+        _check_ends(space)
+        return Problem(task, space, _settings(data.get("search", {})), text)
+    except (DesignError, StructureError, InputError) as error:
+        raise InputError(f"{name}: {error}") from error
+
+
+def _start(task: Task, data: dict[str, Any]) -> Tables:
+    tables: Tables = {"design": dict(data.get("design", {})), "controller": dict(data.get("controller", {}))}
+    if task.payload:
+        tables["design"]["payload"] = {**tables["design"].get("payload", {}), "mass": task.payload}
+    return tables
+
+
+def _whole(tables: Tables) -> Tables:
+    """Start values of every field there is."""
+    design = design_from_dict(tables["design"])
+    fields_of = design_to_dict(design)
+    fields_of["structure"] = {"rod_length": design.length, "stiff_cables": fields_of["structure"]["stiff_cables"]}
+    return {"design": fields_of, "controller": asdict(Cpg.from_dict(tables["controller"]))}
+
+
+def _check_ends(space: Space) -> None:
+    """Refuse a range that leaves what its field may be. What only some of the space's designs break is found later."""
+    design = design_from_dict(space.tables["design"])
+    for dimension in space.dimensions:
+        ends = range(len(dimension.choices)) if dimension.choices else (dimension.low, dimension.high)
+        for value in ends:
+            tables = space.apply(space.start | {dimension.name: value})
+            group = getattr(design, dimension.path[1], None) if dimension.path[0] == "design" else None
+            try:
+                if dimension.path[0] == "controller":
+                    Cpg.from_dict(tables["controller"])
+                elif is_dataclass(group) and len(dimension.path) == 3 and not dimension.choices:
+                    replace(group, **{dimension.path[2]: value})  # type: ignore[type-var]
+                else:
+                    design_from_dict(tables["design"])
+            except (DesignError, StructureError) as error:
+                shown = dimension.choices[int(value)] if dimension.choices else f"{value:g}"
+                raise InputError(f"[space] {dimension.name!r} at {shown}: {error}") from error
+
+
+def _settings(data: Any) -> Settings:
+    allowed = [f.name for f in fields(Settings)]
+    if not isinstance(data, dict) or set(data) - set(allowed):
+        raise InputError(f"[search] = {data!r}: its fields are {', '.join(allowed)}")
+    values = dict(data)
+    for key, kind in (("objectives", Objective), ("constraints", Bound)):
+        if key in values:
+            texts = [values[key]] if isinstance(values[key], str) else values[key]
+            values[key] = tuple(kind.parse(text) for text in texts)
+    return Settings(**values)

@@ -1,0 +1,97 @@
+"""Where finished trials are kept: an Optuna study in SQLite, or in any database that SQLAlchemy has a URL for.
+
+A trial is written in one transaction when it is finished, never before, so a killed search leaves whole trials only.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import optuna
+from optuna.trial import TrialState, create_trial
+from sqlalchemy.exc import SQLAlchemyError
+
+from tensegym.errors import InputError
+
+from .asker import Asker
+from .evaluate import Outcome
+from .problem import Problem
+from .space import Value
+
+Finished = dict[int, tuple[dict[str, Value], Outcome]]  # number of a trial: its values and outcome
+
+
+class Store:
+    """The study of one output folder. url: default study.db in the folder.
+
+    Raises InputError where the database does not answer, or holds another search under the same name.
+    """
+
+    def __init__(self, folder: Path, problem: Problem | None, url: str | None = None) -> None:
+        url = url or f"sqlite:///{folder / 'study.db'}"
+        name = "tensegym design" if url.startswith("sqlite:///") else f"tensegym design {folder.resolve().name}"
+        optuna.logging.set_verbosity(optuna.logging.ERROR)
+        try:
+            storage = optuna.storages.RDBStorage(url)
+            if problem is None:
+                self._study = optuna.load_study(study_name=name, storage=storage)
+            else:
+                self._study = optuna.create_study(
+                    study_name=name, storage=storage, load_if_exists=True,
+                    directions=[o.direction for o in problem.settings.objectives],
+                )  # fmt: skip
+        except KeyError as error:
+            raise InputError(f"{url} holds no study {name!r}; start one with `tensegym design run`") from error
+        except (SQLAlchemyError, ImportError, optuna.exceptions.OptunaError) as error:
+            raise InputError(f"storage {url!r} does not answer: {str(error).splitlines()[0]}") from error
+        known = self._study.user_attrs.get("problem")
+        if problem is not None and known is None:
+            self._study.set_user_attr("problem", problem.text)
+        elif problem is not None and known != problem.text:
+            raise InputError(f"{folder} holds the study of another task file; resume that one, or give another --out")
+
+    @property
+    def problem_text(self) -> str:
+        return self._study.user_attrs["problem"]
+
+    @property
+    def study(self) -> optuna.Study:
+        """For Optuna's own tools."""
+        return self._study
+
+    def note(self, key: str, value: Any) -> None:
+        """Keep a plain value with the study."""
+        self._study.set_user_attr(key, value)
+
+    def noted(self, key: str) -> Any:
+        """What `note` kept, or None."""
+        return self._study.user_attrs.get(key)
+
+    def add(self, asker: Asker, values: dict[str, Value], outcome: Outcome) -> None:
+        """Write a finished trial."""
+        refused = outcome.refused is not None
+        self._study.add_trial(create_trial(
+            state=TrialState.FAIL if refused else TrialState.COMPLETE,
+            values=None if refused else [outcome.metrics[o.metric] for o in asker.settings.objectives],
+            params=values, distributions=asker.distributions, user_attrs={"outcome": asdict(outcome)},
+        ))  # fmt: skip
+
+    def pace(self, budget: int) -> dict[str, float | None]:
+        """Trials a minute over the last fifty, and the seconds that ``budget`` trials still take at that rate."""
+        ends = sorted(t.datetime_complete for t in self._study.get_trials(deepcopy=False) if t.datetime_complete)
+        recent = ends[-50:]
+        span = (recent[-1] - recent[0]).total_seconds() if len(recent) > 1 else 0.0
+        if not span:
+            return {"trials_a_minute": None, "seconds_left": None}
+        rate = (len(recent) - 1) / span
+        return {"trials_a_minute": 60 * rate, "seconds_left": max(0, budget - len(ends)) / rate}
+
+    def finished(self) -> Finished:
+        """Every trial that is done, by number."""
+        found: Finished = {}
+        for trial in self._study.get_trials(deepcopy=False):
+            outcome = Outcome(**trial.user_attrs["outcome"])
+            found[outcome.number] = (dict(trial.params), outcome)
+        return found

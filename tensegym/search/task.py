@@ -1,0 +1,57 @@
+"""A task: a motion, how it is tried, and the bound on a metric that says it is done."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+from tensegym.design import bounded, check_ranges
+from tensegym.errors import DesignError, InputError
+from tensegym.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP
+
+from .measure import Bound
+
+
+@dataclass(frozen=True)
+class Task:
+    """One motion. Raises DesignError naming the field that is out of its range.
+
+    goal: the bound on a metric, mean over the episodes, that the search is for. Every episode starts at rest on a
+    random face at a random heading, towards a random direction. An episode without a tip in its first ``patience``
+    seconds ends there.
+    """
+
+    motion: str
+    goal: Bound
+    seconds: float = bounded(0.1, 3600, 10.0, "s", "length of an episode")
+    settle: float = bounded(0, 60, 0.3, "s", "standing still before it")
+    patience: float = bounded(0, 3600, 4.0, "s", "given up without a tip in this time")
+    dt: float = bounded(LEAST_TIME_STEP, LARGEST_TIME_STEP, 2e-3, "s", "physics time step")
+    payload: float = bounded(0, 100, 0.0, "kg", "mass of the payload a design must carry; 0 asks for none")
+
+    def __post_init__(self) -> None:
+        check_ranges(self)
+
+
+MOTIONS: dict[str, dict[str, Any]] = {
+    "roll": {"goal": "speed_lps >= 0.2"},
+    "carry": {"goal": "speed_lps >= 0.2", "payload": 0.5},
+}
+
+
+def task_from(data: Any) -> Task:
+    """From a motion's name, or a table that names one and changes its fields. Raises InputError or DesignError."""
+    table = {"motion": data} if isinstance(data, str) else data
+    if not isinstance(table, dict) or table.get("motion") not in MOTIONS:
+        given = table.get("motion") if isinstance(table, dict) else table
+        raise InputError(f"task motion {given!r} is not one of {', '.join(MOTIONS)}")
+    allowed = [f.name for f in fields(Task)]
+    unknown = set(table) - set(allowed)
+    if unknown:
+        raise InputError(f"unknown field {sorted(unknown)[0]!r} in [task]; one of {', '.join(allowed)}")
+    values = MOTIONS[table["motion"]] | table
+    values = {k: float(v) if isinstance(v, int) and not isinstance(v, bool) else v for k, v in values.items()}
+    try:
+        return Task(**values | {"goal": Bound.parse(values["goal"])})
+    except DesignError as error:
+        raise InputError(f"[task]: {error}") from error
