@@ -97,7 +97,7 @@ class TensegrityRobot:
         self._springs = np.zeros((4, len(self.cables.ends)))
         self._springs[3] = self.cables.natural
         self.lengths, self.rates, self.tensions, self.natural_lengths = self._springs[:, :cables]
-        self.flexure_angles, self.flexure_moments = self._springs[0, cables:], self._springs[2, cables:]
+        self.flexure_moments = self._springs[2, cables:]
         self._last_poses = np.zeros_like(self.world.poses)
         self._foot_positions = np.zeros((len(design.standing.nodes), 3))
         self._account = np.zeros(kernel.ACCOUNT_SIZE)
@@ -286,15 +286,20 @@ class TensegrityRobot:
         )  # fmt: skip
         return Energies(kinetic, potential, elastic + self.flexure_energy())
 
+    @property
+    def flexure_angles(self) -> FloatArray:
+        """(f,) bend of each split rod [rad], now."""
+        return self.world.read()[1].copy()
+
     def flexure_margins(self) -> FloatArray:
         """(f,) distance of each flexure to its stops, where its fitted range ends: 1 straight, 0 on a stop."""
         limit = self.design.flexure.max_angle if self.design.flexure else 1.0
-        return 1 - np.abs(self.world.read()[1]) / limit
+        return 1 - np.abs(self.flexure_angles) / limit
 
     def flexure_energy(self) -> float:
         """Energy stored in the flexures of split rods [J], now."""
         stiffness = self.cables.params[self.cables.first_flexure :, kernel.STIFFNESS]
-        return float(0.5 * stiffness @ self.world.angles**2)
+        return float(0.5 * stiffness @ self.flexure_angles**2)
 
     def account(self) -> Account:
         """Running totals since the last reset."""

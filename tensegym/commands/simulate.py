@@ -143,6 +143,7 @@ def _header(robot: TensegrityRobot) -> list[str]:
     names += [f"stiff_tension_{a + 1}_{b + 1}_N" for a, b in structure.stiff_cables.tolist()]
     if robot.design.payload:
         names += [f"payload_tension_{r + 1}_N" for r in range(len(structure.rods))]
+    names += [f"flexure_{r + 1}_{what}" for what in ("rad", "Nm") for r in robot.design.flexible_rods.tolist()]
     for d in range(len(robot.drives)):
         names += [f"drive_{d + 1}_{what}" for what in
                   ("command_rad", "angle_rad", "current_A", "load_torque_Nm", "cable_length_m")]  # fmt: skip
@@ -153,7 +154,7 @@ def _row(robot: TensegrityRobot) -> list[float]:
     state, first = robot.drives, robot.cables.first_driven
     values = [robot.time, *robot.node_positions_in_world().ravel()]
     values += robot.poses_in_world[: len(robot.design.standing.rods), 3:].ravel().tolist()
-    values += robot.tensions.tolist()
+    values += [*robot.tensions.tolist(), *robot.flexure_angles.tolist(), *robot.flexure_moments.tolist()]
     for d, row in enumerate(state):
         values += [row[drives.COMMAND], row[drives.ROTOR_ANGLE] / robot.design.drive.gear_ratio, row[drives.CURRENT],
                    row[drives.LOAD_TORQUE], robot.natural_lengths[first + d]]  # fmt: skip
