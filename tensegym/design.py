@@ -136,12 +136,14 @@ class RobotDesign:
         return buckling_load(self.flexure.geometry(), half, half)
 
     def rod_pin(self, rod: int) -> RodPin:
-        """The pin and the torsion spring that stand for a split rod's hinge."""
+        """The pin and the torsion spring that stand for a split rod's hinge, fitted under the rod's prestress."""
         from .flexure.pin import rod_pin
 
         assert self.flexure is not None
         half = self.half_length(rod)
-        return rod_pin(self.flexure.geometry(), half, half, self.flexure.max_angle)
+        # rounded, so that equal rods share one fit; a rod that two-way cables stretch is fitted without load
+        compression = max(0.0, round(float(self.rod_compressions[rod]), 6))
+        return rod_pin(self.flexure.geometry(), half, half, self.flexure.max_angle, compression)
 
     @property
     def cable_natural_lengths(self) -> FloatArray:
