@@ -20,7 +20,7 @@ from numba import njit
 
 from .drives import CURRENT, PULLED, VOLTAGE, drive_step
 from .pins import add_generalised, pin_axis, pinned_inertia, second_poses, second_twist, step_pinned, symmetry_axis
-from .rotation import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE, turn_bodies
+from .rotation import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE, dot, turn_bodies
 
 # Columns of a cable's parameter row
 LOCAL_A, LOCAL_B, STIFFNESS, DAMPING, TWO_WAY = slice(0, 3), slice(3, 6), 6, 7, 8
@@ -122,7 +122,7 @@ def explicit_tensions(cables, lengths, rates, natural, tensions):
 def mobility_matrix(poses, ends, bodies, partner, pins, pin_params, turns, directions, out):
     """A = J M^-1 J^T (c, c) [1/kg] for bodies symmetric about their z axis, pinned pairs moving as their pin allows."""
     count = len(ends)
-    answers = np.empty((count, 2, 2, 6))  # accelerations by a unit of the row's end: of its body, of the body's partner
+    response = np.zeros((len(poses), 6, count))  # accelerations of the bodies by a unit tension in each cable
     axis = np.empty((len(poses), 3))
     for b in range(len(poses)):
         symmetry_axis(poses[b], axis[b])
@@ -132,34 +132,28 @@ def mobility_matrix(poses, ends, bodies, partner, pins, pin_params, turns, direc
             if partner[body] >= 0:
                 continue
             sign = bodies[body, INVERSE_MASS] if side == 1 else -bodies[body, INVERSE_MASS]
-            tx, ty, tz = turns[c, side, 0], turns[c, side, 1], turns[c, side, 2]
             across = bodies[body, INVERSE_TRANSVERSE]
-            more = bodies[body, INVERSE_AXIAL] - across
-            more *= tx * axis[body, 0] + ty * axis[body, 1] + tz * axis[body, 2]
+            more = (bodies[body, INVERSE_AXIAL] - across) * dot(turns[c, side], axis[body])
             for i in range(3):
-                answers[c, side, 0, i] = sign * directions[c, i]
-                answers[c, side, 0, 3 + i] = across * turns[c, side, i] + more * axis[body, i]
-    _pinned_answers(poses, ends, bodies, pins, pin_params, turns, directions, answers)
+                response[body, i, c] += sign * directions[c, i]
+                response[body, 3 + i, c] += across * turns[c, side, i] + more * axis[body, i]
+    if len(pins):
+        _pinned_response(poses, ends, bodies, pins, pin_params, turns, directions, response)
     for c in range(count):
-        for d in range(c + 1):
-            total = 0.0
-            for side in range(2):
-                sign = 1.0 if side == 1 else -1.0
-                for other in range(2):
-                    if ends[d, other] == ends[c, side]:
-                        answer = answers[d, other, 0]
-                    elif ends[d, other] == partner[ends[c, side]]:
-                        answer = answers[d, other, 1]
-                    else:
-                        continue
-                    for i in range(3):
-                        total += sign * directions[c, i] * answer[i] + turns[c, side, i] * answer[3 + i]
-            out[c, d] = total
-            out[d, c] = total
+        a, b = response[ends[c, 0]], response[ends[c, 1]]
+        x, y, z = directions[c]
+        (ax, ay, az), (bx, by, bz) = turns[c]
+        for d in range(c + 1):  # one loop over cables with the rest written out: it vectorises
+            out[c, d] = (x * (b[0, d] - a[0, d]) + y * (b[1, d] - a[1, d]) + z * (b[2, d] - a[2, d])
+                         + ax * a[3, d] + ay * a[4, d] + az * a[5, d]
+                         + bx * b[3, d] + by * b[4, d] + bz * b[5, d])  # fmt: skip
+    for c in range(count):
+        for d in range(c):
+            out[d, c] = out[c, d]
 
 
 @njit(cache=True)
-def _pinned_answers(poses, ends, bodies, pins, pin_params, turns, directions, answers):
+def _pinned_response(poses, ends, bodies, pins, pin_params, turns, directions, response):
     geometry, mass, inverse = np.empty((6, 3)), np.empty((7, 7)), np.empty((7, 7))
     push, motion, force, twist = np.empty(7), np.empty(7), np.empty(3), np.empty(6)
     for p in range(len(pins)):
@@ -180,8 +174,8 @@ def _pinned_answers(poses, ends, bodies, pins, pin_params, turns, directions, an
                     motion[i] = total
                 second_twist(geometry, motion, twist)
                 for i in range(6):
-                    answers[c, side, 1 if second else 0, i] = motion[i]
-                    answers[c, side, 0 if second else 1, i] = twist[i]
+                    response[pins[p, 0], i, c] += motion[i]
+                    response[pins[p, 1], i, c] += twist[i]
 
 
 @njit(cache=True)
@@ -281,7 +275,8 @@ def substep(poses, angles, wrenches, last_poses, ends, cables, bodies, partner, 
 
     wrenches_of(ends, turns, directions, tensions, wrenches)
     turn_bodies(poses, last_poses, bodies, partner, dt, wrenches)
-    step_pinned(poses, last_poses, bodies, pins, pin_params, rates[flexures:], dt, wrenches)
+    if len(pins):
+        step_pinned(poses, last_poses, bodies, pins, pin_params, rates[flexures:], dt, wrenches)
 
     for d in range(len(drives)):
         c = first_driven + d
@@ -305,7 +300,7 @@ def _account_feet(poses, last_poses, feet, foot_points, foot_radius, foot_positi
         limit = foot_radius[p] + GROUND_TOLERANCE
         if now[p, 2] <= limit and foot_positions[p, 2] <= limit:
             grounded += 1
-            path += np.hypot(now[p, 0] - foot_positions[p, 0], now[p, 1] - foot_positions[p, 1])
+            path += np.sqrt((now[p, 0] - foot_positions[p, 0]) ** 2 + (now[p, 1] - foot_positions[p, 1]) ** 2)
     foot_positions[:] = now
     if grounded:
         account[FOOT_PATH] += path / grounded
@@ -315,4 +310,4 @@ def _account_feet(poses, last_poses, feet, foot_points, foot_radius, foot_positi
         total += masses[b]
         dx += masses[b] * (poses[b, 0] - last_poses[b, 0])
         dy += masses[b] * (poses[b, 1] - last_poses[b, 1])
-    account[CENTRE_PATH] += np.hypot(dx, dy) / total
+    account[CENTRE_PATH] += np.sqrt(dx * dx + dy * dy) / total
