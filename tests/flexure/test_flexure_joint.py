@@ -321,6 +321,9 @@ def test_bad_joints_are_refused(tmp_path):
             FlexureJoint(robot, "hinge", joint, along=(0, 1, 1))
         with pytest.raises(FlexureError, match="loss_time = -1"):
             FlexureJoint(robot, "hinge", joint, loss_time=-1)
+        with pytest.raises(FlexureError, match="centre = nan"):
+            FlexureJoint(robot, "hinge", joint, centre=np.nan)
+        assert not robot.flexures and list(robot.joints) == ["hinge", "guide"]
         FlexureJoint(robot, "hinge", joint)
         with pytest.raises(FlexureError, match="a flexure already"):
             FlexureJoint(robot, "hinge", joint)
@@ -330,6 +333,12 @@ def test_bad_joints_are_refused(tmp_path):
         path.write_text(STAND.read_text().replace(old, new))
         with pytest.raises(FlexureError, match=words), FlexibleRobot(path, fixed_base=True) as robot:
             FlexureJoint(robot, "hinge", joint)
+    with pytest.raises(FlexureError, match="gravity = "):
+        FlexibleRobot(STAND, gravity=(0, 0))
+    with pytest.raises(FlexureError, match=r"force = .* on link 'arm'"):
+        Load("arm", (np.nan, 0, 0))
+    with FlexibleRobot(STAND, fixed_base=True) as robot, pytest.raises(FlexureError, match="position of hinge"):
+        robot.place({"hinge": np.inf})
     with pytest.raises(FileNotFoundError):
         FlexibleRobot(tmp_path / "none.urdf")
     (tmp_path / "bad.urdf").write_text("<robot")
@@ -352,7 +361,8 @@ def test_a_file_beside_the_urdf_declares_the_flexures(tmp_path):
         ('hinge = "leaf-spring"\nfit = "leaf.json"', "", "neither hinge nor fit"),
         ("loss_time_s = 1e-4", 'loss_time_s = "much"', "give a number"),
         ("loss_time_s = 1e-4", "loss = 1", "no field 'loss'"),
-        ("loss_time_s = 1e-4", 'model = "beam"', "model = 'beam'"),
+        ("loss_time_s = 1e-4", "out_of_plane = [1, 2, -3]", r"stand.toml: joint 'hinge': across = \(1, 2, -3\)"),
+        ("loss_time_s = 1e-4", 'model = "paper"', "model = 'paper'; one of potential, planar, torsion"),
         ('[[flexure]]\njoint = "hinge"', "", "no field"),
     ):
         path.write_text(text.replace(old, new))

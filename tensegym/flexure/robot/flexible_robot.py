@@ -43,7 +43,7 @@ class FlexibleRobot:
             raise FlexureError(f"scheme = {scheme!r}; one of {', '.join(SCHEMES)}")
         self.urdf = FlexibleUrdf(urdf)
         self.dt, self.scheme, self.fixed_base, self.friction = dt, scheme, fixed_base, friction
-        self.gravity, self.base_pose = np.array(gravity, dtype=float), np.array(pose, dtype=float)
+        self.gravity, self.base_pose = _finite("gravity", gravity, 3), _finite("pose", pose, 7)
         self.flexures: dict[str, FlexureJoint] = {}
         self.loads: list[Load] = []
         self.world = World(dt, 0.0, gui)
@@ -95,17 +95,17 @@ class FlexibleRobot:
         """Start anew: joint positions and rates by name (zero where not named), pose (7,) of the base link and velocity
         (6,) of the base's centre, linear and angular in the world. A flexure's tip is placed with ``place_tip``.
         """
-        where = self.base_pose if pose is None else np.array(pose, dtype=float)
+        where = self.base_pose if pose is None else _finite("pose", pose, 7)
         state, tree, turn = self._stepper, self._stepper.tree, Rotation.from_quat(where[3:])
         state.base[:3] = where[:3] + turn.apply(tree.centre[0])
         state.base[3:] = (turn * Rotation.from_matrix(tree.turn[0]).inv()).as_quat()
         state.positions[:], state.speeds[:] = 0.0, 0.0
         for name, value in (joints or {}).items():
-            state.positions[self._column(name)] = value
+            state.positions[self._column(name)] = _finite(f"position of {name}", [value], 1)[0]
         for name, value in (rates or {}).items():
-            state.speeds[tree.first + self._column(name)] = value
+            state.speeds[tree.first + self._column(name)] = _finite(f"rate of {name}", [value], 1)[0]
         if tree.first:
-            state.speeds[:6] = twist
+            state.speeds[:6] = _finite("twist", twist, 6)
         for flexure in self.flexures.values():
             flexure.outside = Outside(0, 1.0, 0.0)
         state.start(self.torques, self._loads())
@@ -181,6 +181,7 @@ class FlexibleRobot:
     # -- names ----------------------------------------------------------------------------------------------------
 
     def _loads(self) -> list[tuple[int, Load]]:
+        """The loads with their links' rows."""
         return [(self._link(load.link), load) for load in self.loads]
 
     def _column(self, name: str) -> int:
@@ -192,3 +193,11 @@ class FlexibleRobot:
         if name not in self.links:
             raise FlexureError(f"{self.urdf.path.name} has no link {name!r}; it has {', '.join(self.links)}")
         return self.links[name]
+
+
+def _finite(what: str, values: Sequence[float], count: int) -> FloatArray:
+    """(count,) array. Raises FlexureError for another number of values or one that is not finite."""
+    array = np.array(values, dtype=float)
+    if array.shape != (count,) or not np.isfinite(array).all():
+        raise FlexureError(f"{what} = {array.tolist()}; give {count} finite value{'s' * (count > 1)}")
+    return array

@@ -24,11 +24,12 @@ from typing import Any
 from ...bullet import packaged_urdf
 from ...errors import FlexureError
 from ..hinge_file import as_hinge
-from ..joint import MODELS, Joint, fit_joint
+from ..joint import Joint, fit_joint
 from ..joint_file import load_joint
 from .flexible_robot import FlexibleRobot
 from .flexure_joint import FlexureJoint
 
+MODELS = ("potential", "planar", "torsion")
 _FIELDS = {"joint", "hinge", "fit", "model", "along", "centre", "loss_time_s", "out_of_plane"}
 
 
@@ -62,9 +63,9 @@ def load_robot(path: str | Path, **options: Any) -> FlexibleRobot:
                 centre=section.get("centre", 0.5), loss_time=section.get("loss_time_s", 0.0),
                 across=None if across is None else tuple(across),
             )  # fmt: skip
-    except Exception:
+    except FlexureError as error:
         robot.close()
-        raise
+        raise FlexureError(f"{path}: {error}") from error
     return robot
 
 
@@ -78,7 +79,7 @@ def _fitted(path: Path, section: Any) -> Joint:
     for name, count in (("along", 3), ("out_of_plane", 3), ("centre", 1), ("loss_time_s", 1)):
         _numbers(path, section, name, count)
     if section.get("model", "potential") not in MODELS:
-        raise FlexureError(f"{path}: model = {section['model']!r}; one of potential, planar, torsion")
+        raise FlexureError(f"{path}: model = {section['model']!r}; one of {', '.join(MODELS)}")
     named, fit = section.get("hinge"), section.get("fit")
     if named is None and fit is None:
         raise FlexureError(f"{path}: the flexure of joint {section['joint']!r} has neither hinge nor fit")

@@ -76,6 +76,8 @@ class FlexureJoint:
             raise FlexureError(f"joint {joint!r}: a {kind} alone has no limit; give box=Box(angle, force)")
         if not (np.isfinite(loss_time) and loss_time >= 0):
             raise FlexureError(f"joint {joint!r}: loss_time = {loss_time:g} s; give 0 or more")
+        if not np.isfinite(centre):
+            raise FlexureError(f"joint {joint!r}: centre = {centre:g}; give a fraction of the hinge's length")
         if across is not None and not (len(across) == 3 and all(np.isfinite(k) and k > 0 for k in across)):
             raise FlexureError(f"joint {joint!r}: across = {across}; give 3 stiffnesses above 0 (z, about y, about x)")
         self.robot, self.name, self.box = robot, joint, box
