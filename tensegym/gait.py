@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from .drives import CURRENT
 from .faces import supporting_face
 from .robot import TensegrityRobot
 from .structure import FloatArray
@@ -45,6 +46,25 @@ class GaitMetrics:
         """Plain JSON types; an infinite cost of transport becomes None."""
         data = asdict(self) | {"audit_passed": self.audit_passed}
         return {k: (None if isinstance(v, float) and not np.isfinite(v) else v) for k, v in data.items()}
+
+
+class DriveMeter:
+    """Watches the drives of a robot through a trial; call `update` once a control step."""
+
+    def __init__(self, robot: TensegrityRobot) -> None:
+        self.robot = robot
+        self._squares = np.zeros(len(robot.drives))
+        self._updates = 0
+
+    def update(self) -> None:
+        """Take the present currents in."""
+        self._squares += (self.robot.drives[:, CURRENT] / self.robot.design.drive.current_limit) ** 2
+        self._updates += 1
+
+    @property
+    def load(self) -> float:
+        """Root mean square current of the hardest worked drive, as a part of the current limit."""
+        return float(np.sqrt(self._squares.max(initial=0.0) / max(1, self._updates)))
 
 
 class GaitMeter:

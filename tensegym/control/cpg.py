@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cache
 from importlib import resources
@@ -117,11 +118,16 @@ def pose_terms(ends: FloatArray) -> FloatArray:
 class CpgController:
     """A generator driving a robot towards a direction (2,); starts with all phases at their lags.
 
-    Raises DesignError where the robot has another number of kinds of drives than the parameters.
+    feedback: called for the signals (w,), in place of the quadratic form. Raises DesignError where the robot has
+    another number of kinds of drives than the parameters.
     """
 
-    def __init__(self, robot: TensegrityRobot, parameters: Cpg, direction: FloatArray) -> None:
+    def __init__(
+        self, robot: TensegrityRobot, parameters: Cpg, direction: FloatArray,
+        feedback: Callable[[], FloatArray] | None = None,
+    ) -> None:  # fmt: skip
         self.robot, self.parameters, self.direction = robot, parameters, direction
+        self._feedback = feedback or self._pose_feedback
         kinds = drive_kinds(robot.design)
         count = int(kinds.max()) + 1
         if count != len(parameters.amplitudes):
@@ -138,10 +144,13 @@ class CpgController:
         """A command is held for this long [s]."""
         return self.parameters.period
 
+    def _pose_feedback(self) -> FloatArray:
+        return (self._weights * pose_terms(cable_ends_in_heading(self.robot, self.direction))).sum(axis=1)
+
     def angles(self) -> FloatArray:
         """Commanded spool angles (w,) [rad] for the next period; advances the oscillators by it."""
         p = self.parameters
-        signal = (self._weights * pose_terms(cable_ends_in_heading(self.robot, self.direction))).sum(axis=1)
+        signal = self._feedback()
         part = np.clip(0.5 + p.gain * signal + self._amplitudes * np.cos(self.phases), 0, 1)
         steps = max(1, round(p.period / 0.02))
         for _ in range(steps):

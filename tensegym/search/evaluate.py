@@ -9,13 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from tensegym.control.cpg import Cpg, CpgController
 from tensegym.design import RobotDesign
 from tensegym.design_file import design_from_dict
 from tensegym.errors import DesignError, SimulationError, StructureError
-from tensegym.gait import GaitMeter
+from tensegym.gait import DriveMeter, GaitMeter
 from tensegym.robot import TensegrityRobot
+from tensegym.structure import FloatArray
 
+from .controllers import Start, controller
 from .measure import WORST_COST, aggregate
 from .task import Task
 
@@ -49,22 +50,37 @@ class Outcome:
     seconds: float = 0.0
 
 
-def evaluate(design: RobotDesign, controller: dict[str, Any], task: Task, seed: int) -> Episode:
+def evaluate(design: RobotDesign, control: dict[str, Any], task: Task, seed: int) -> Episode:
     """Metrics of one episode. Raises DesignError or StructureError for what cannot be built."""
     with TensegrityRobot(design, dt=task.dt) as robot:
-        return _episode(robot, Cpg.from_dict(controller), task, seed)
+        return _episode(robot, controller(control), task, seed)
+
+
+@dataclass(frozen=True)
+class Tried:
+    """All episodes of a trial, one by one."""
+
+    number: int
+    episodes: tuple[Episode, ...]
+
+
+def try_all(trial: Trial) -> Tried:
+    """Every episode of a trial, without a bar. Raises DesignError or StructureError."""
+    design, start = design_from_dict(trial.design), controller(trial.controller)
+    with TensegrityRobot(design, dt=trial.task.dt) as robot:
+        return Tried(trial.number, tuple(_episode(robot, start, trial.task, seed) for seed in trial.seeds))
 
 
 def run_trial(trial: Trial) -> Outcome:
     """All episodes of a trial, or as many as it takes to see that it is hopeless."""
     begun = time.perf_counter()
     try:
-        design, parameters = design_from_dict(trial.design), Cpg.from_dict(trial.controller)
+        design, start = design_from_dict(trial.design), controller(trial.controller)
         episodes: list[Episode] = []
         with TensegrityRobot(design, dt=trial.task.dt) as robot:
-            CpgController(robot, parameters, np.array([1.0, 0.0]))  # refuses what does not fit before any step
+            start(robot, np.array([1.0, 0.0]))  # refuses what does not fit before any step
             for seed in trial.seeds:
-                episodes.append(_episode(robot, parameters, trial.task, seed))
+                episodes.append(_episode(robot, start, trial.task, seed))
                 if 2 * len(episodes) == len(trial.seeds) and progress_loss(trial.task, episodes) > trial.bar:
                     break
     except (DesignError, StructureError) as error:
@@ -78,32 +94,38 @@ def progress_loss(task: Task, episodes: list[Episode]) -> float:
     return task.goal.violation(aggregate(episodes))
 
 
-def _episode(robot: TensegrityRobot, parameters: Cpg, task: Task, seed: int) -> Episode:
+def start_of(robot: TensegrityRobot, task: Task, seed: int) -> FloatArray:
+    """Stand the robot as the episode of a seed begins; returns the wanted direction (2,)."""
     rng = np.random.default_rng(seed)
     face = int(rng.integers(len(robot.faces.triangles)))
     heading, towards = rng.uniform(-math.pi, math.pi, 2)
-    direction = np.array([math.cos(towards), math.sin(towards)])
-    sound = True
     robot.reset(face, heading)
     robot.step(round(task.settle / robot.dt))
+    return np.array([math.cos(towards), math.sin(towards)])
+
+
+def _episode(robot: TensegrityRobot, start: Start, task: Task, seed: int) -> Episode:
+    sound = True
+    direction = start_of(robot, task, seed)
     meter = GaitMeter(robot, direction)
-    controller = CpgController(robot, parameters, direction)
-    substeps = max(1, round(controller.period / robot.dt))
+    drives, driver = DriveMeter(robot), start(robot, direction)
+    substeps = max(1, round(driver.period / robot.dt))
     metrics = meter.metrics()
     for tick in range(max(1, math.floor(task.seconds / (substeps * robot.dt) + 1e-9))):
         if meter.tips == 0 and tick * substeps * robot.dt >= task.patience:
             break
         try:
-            robot.command(controller.angles())
+            robot.command(driver.angles())
             robot.step(substeps)
             meter.update()
+            drives.update()
         except SimulationError:
             sound = False
             break
         metrics = meter.metrics()
     sound = sound and metrics.audit_passed
     found = {k: float(v) for k, v in vars(metrics).items()}
-    found |= {"arrived": 0.0, "mass": robot.design.mass, "weight": robot.design.mass * robot.design.gravity,
+    found |= {"drive_load": drives.load, "mass": robot.design.mass, "weight": robot.design.mass * robot.design.gravity,
               "sound": float(sound)}  # fmt: skip
     if not sound:
         found |= {"speed": 0.0, "speed_lps": 0.0, "tips": 0.0}

@@ -2,7 +2,7 @@
 
     task = "carry"                                          # or a [task] table, see tensegym.search.task
     [design]                                                # where the search begins, as a design file
-    [controller]                                            # parameters of the pattern generator
+    [controller]                                            # see tensegym.search.controllers
     [space]
     "design.elastic_cable.stiffness" = {low = 200.0, high = 800.0, log = true}
     "controller.feedback" = {spread = 1.0}                  # every entry, this far about its start
@@ -16,18 +16,18 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import asdict, dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 import tomli_w
 
-from tensegym.control.cpg import Cpg
 from tensegym.design import bounded, check_ranges
 from tensegym.design_file import design_from_dict, design_to_dict
 from tensegym.errors import DesignError, InputError, StructureError
 
+from .controllers import check_controller
 from .measure import Bound, Objective
 from .space import Space, Tables, space_from
 from .task import Task, task_from
@@ -133,7 +133,7 @@ def _whole(tables: Tables) -> Tables:
     design = design_from_dict(tables["design"])
     fields_of = design_to_dict(design)
     fields_of["structure"] = {"rod_length": design.length, "stiff_cables": fields_of["structure"]["stiff_cables"]}
-    return {"design": fields_of, "controller": asdict(Cpg.from_dict(tables["controller"]))}
+    return {"design": fields_of, "controller": check_controller(tables["controller"])}
 
 
 def _check_ends(space: Space) -> None:
@@ -146,7 +146,7 @@ def _check_ends(space: Space) -> None:
             group = getattr(design, dimension.path[1], None) if dimension.path[0] == "design" else None
             try:
                 if dimension.path[0] == "controller":
-                    Cpg.from_dict(tables["controller"])
+                    check_controller(tables["controller"])
                 elif is_dataclass(group) and len(dimension.path) == 3 and not dimension.choices:
                     replace(group, **{dimension.path[2]: value})  # type: ignore[type-var]
                 else:

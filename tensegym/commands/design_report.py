@@ -1,0 +1,55 @@
+"""`tensegym design report`: confirm the best trials of a search and write what there is to know about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from tensegym.errors import InputError
+from tensegym.report import Report, table
+from tensegym.search.confirm import confirm
+from tensegym.search.engine import engine
+from tensegym.search.report import write_report
+from tensegym.search.winner import ranked
+
+from .design import open_search
+
+
+@dataclass(frozen=True)
+class DesignReport:
+    """Confirm a search's best trials on new starts, and write report.md with figures, the best URDF and TOML."""
+
+    folder: Path = Path("design")
+    """Folder of the search."""
+    episodes: int = 50
+    """New starts that start and winner are tried from, at the default time step and at half of it."""
+    against: tuple[Path, ...] = ()
+    """Folders of other searches to compare with, such as a random one."""
+    jobs: int = 1
+    """Processes."""
+    engine: str = "joblib"
+    """Where episodes run: joblib, ray."""
+    address: str | None = None
+    """Address of a running Ray cluster."""
+    storage: str | None = None
+    """Database URL; default: the one it was started with."""
+
+    def run(self) -> Report:
+        if self.episodes < 2:
+            raise InputError(f"episodes = {self.episodes} must be 2 or more")
+        problem, store = open_search(self.folder, self.storage)
+        others = {}
+        for folder in self.against:
+            other, kept = open_search(folder)
+            others[f"{other.settings.sampler}, {folder.name}"] = (other, kept.finished())
+        finished = store.finished()
+        if not ranked(problem, finished):
+            raise InputError(f"{self.folder} has no finished trial to report; resume it first")
+        with engine(self.engine, self.jobs, self.address) as pool:
+            confirmed = confirm(problem, finished, pool, self.episodes)
+        data = write_report(self.folder, problem, store, confirmed, others)
+        rows = [[name, c["speed_lps_median"], c["speed_lps_mean"], c["slip_share_median"], c["drive_load_largest"],
+                 c["audit_failures"]] for name, c in data["confirmed"].items()]  # fmt: skip
+        header = ["", "median L/s", "mean L/s", "slip share", "drive load", "audit failures"]
+        text = table(header, rows) + f"\ngoal {data['goal']}: {'met' if data['goal_met'] else 'not met'}"
+        return Report(f"{text}\n{self.folder / 'report.md'}", data)

@@ -1,0 +1,80 @@
+"""Confirmation: the best trials tried again from starts the search never drew, and the winner at half the time step."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from .engine import Engine
+from .evaluate import Episode, Trial, try_all
+from .problem import Problem
+from .space import Tables
+from .store import Finished
+from .winner import ranked
+
+FIRST_SEED = 2**32  # a search draws its seeds below this
+CHUNK = 5  # episodes that go to a worker at a time
+TIME_STEP = 2e-3  # s, the environments' own
+
+
+@dataclass(frozen=True)
+class Confirmed:
+    """number: the winner's. rows: episodes by (who, time step), where who is start or found."""
+
+    number: int
+    rows: dict[tuple[str, float], list[Episode]]
+
+
+def confirm(problem: Problem, finished: Finished, engine: Engine, episodes: int, candidates: int = 5) -> Confirmed:
+    """Pick the winner among the best ``candidates`` over a few new starts, then try it and the start over ``episodes``.
+
+    Every episode is tried as long as the task says, however hopeless.
+    """
+    tables = {n: problem.space.apply(finished[n][0]) for n in ranked(problem, finished)[:candidates]}
+    sign = 1 if problem.settings.objectives[0].maximise else -1
+    metric = problem.settings.objectives[0].metric
+    first = _try(problem, {(n, TIME_STEP): t for n, t in tables.items()}, max(2, episodes // 2), episodes, engine)
+    winner = max(tables, key=lambda n: sign * float(np.mean([row[metric] for row in first[n, TIME_STEP]])))
+    both = {"start": problem.space.apply(problem.space.start), "found": tables[winner]}
+    wanted = {(who, dt): t for who, t in both.items() for dt in (TIME_STEP, TIME_STEP / 2)}
+    return Confirmed(winner, _try(problem, wanted, episodes, 0, engine))
+
+
+def _try(
+    problem: Problem, wanted: Mapping[Any, Tables], episodes: int, skip: int, engine: Engine
+) -> dict[Any, list[Episode]]:
+    """Episodes of each of ``wanted``, keys ending in the time step, from seeds ``skip`` after the first on."""
+    seeds = [FIRST_SEED + skip + i for i in range(episodes)]
+    chunks = [tuple(seeds[i : i + CHUNK]) for i in range(0, episodes, CHUNK)]
+    keys = [(key, chunk) for key in wanted for chunk in chunks]
+    trials = [
+        Trial(i, wanted[key]["design"], wanted[key]["controller"],
+              replace(problem.task, dt=key[-1], patience=problem.task.seconds), chunk)
+        for i, (key, chunk) in enumerate(keys)
+    ]  # fmt: skip
+    results = {tried.number: tried.episodes for tried in engine.map(try_all, trials)}
+    rows: dict[Any, list[Episode]] = {key: [] for key in wanted}
+    for i, (key, _) in enumerate(keys):
+        rows[key] += results[i]
+    return rows
+
+
+def summary(rows: Sequence[Episode]) -> dict[str, float]:
+    """What the report tells of many episodes."""
+    speeds = np.array([row["speed_lps"] for row in rows])
+    return {
+        "episodes": len(rows),
+        "speed_lps_median": float(np.median(speeds)),
+        "speed_lps_mean": float(speeds.mean()),
+        "speed_lps_low": float(np.quantile(speeds, 0.1)),
+        "speed_lps_high": float(np.quantile(speeds, 0.9)),
+        "slip_share_median": float(np.median([row["slip_share"] for row in rows])),
+        "tips_median": float(np.median([row["tips"] for row in rows])),
+        "cost_of_transport_median": float(np.median([row["cost_of_transport"] for row in rows])),
+        "drive_load_largest": max(row["drive_load"] for row in rows),
+        "audit_failures": sum(row["audit_excess"] > 0.01 for row in rows),
+        "disqualified": sum(not row["sound"] for row in rows),
+    }

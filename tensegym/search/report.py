@@ -1,0 +1,160 @@
+"""report.md of a search: what was asked, what was found, how it compares, and the files to build it from."""
+
+from __future__ import annotations
+
+import platform
+import warnings
+from collections.abc import Mapping
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import optuna
+import tomli_w
+
+from tensegym.design_file import design_from_dict, save_design
+from tensegym.structure import FloatArray
+from tensegym.urdf_model import urdf_files
+
+from .confirm import FIRST_SEED, TIME_STEP, Confirmed, summary
+from .pictures import draw_best_gait, draw_importance, draw_pareto, draw_progress
+from .problem import Problem
+from .store import Finished, Store
+from .winner import losses_of, pareto
+
+_ROWS = {
+    "speed_lps_median": "speed, median [L/s]", "speed_lps_mean": "speed, mean [L/s]",
+    "speed_lps_low": "speed, 10 % quantile", "speed_lps_high": "speed, 90 % quantile",
+    "slip_share_median": "slip share, median", "tips_median": "tips, median",
+    "cost_of_transport_median": "cost of transport, median",
+    "drive_load_largest": "drive load (rms current over its limit), largest",
+    "audit_failures": "audit failures", "disqualified": "disqualified",
+}  # fmt: skip
+
+
+def objective_values(problem: Problem, finished: Finished) -> FloatArray:
+    """(t,) first objective of the trials in their order, NaN for those refused, stopped or out of the constraints."""
+    metric = problem.settings.objectives[0].metric
+    return np.array([
+        np.nan if o.refused is not None or o.stopped or max(problem.losses(o.metrics)) > 0 else o.metrics[metric]
+        for _, (_, o) in sorted(finished.items())
+    ])  # fmt: skip
+
+
+def importances(store: Store, problem: Problem) -> dict[str, float]:
+    """Share of each dimension in what separates good trials from others; entries of a vector are added up.
+
+    Empty where there are too few trials to tell.
+    """
+    objective = problem.settings.objectives[0]
+    sign = -1 if objective.maximise else 1
+    evaluator = optuna.importance.PedAnovaImportanceEvaluator()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            shares = optuna.importance.get_param_importances(
+                store.study, evaluator=evaluator,
+                target=lambda t: sign * t.user_attrs["outcome"]["metrics"][objective.metric],
+            )  # fmt: skip
+        except (ValueError, RuntimeError):
+            return {}
+    fields: dict[str, float] = {}
+    for name, share in shares.items():
+        fields[name.split("[")[0]] = fields.get(name.split("[")[0], 0.0) + share
+    return fields
+
+
+def write_report(
+    folder: Path, problem: Problem, store: Store, confirmed: Confirmed, others: Mapping[str, tuple[Problem, Finished]]
+) -> dict[str, Any]:
+    """Write report.md, its figures and best/ into ``folder``; returns the figures of the table as plain types.
+
+    others: searches to compare with, by name.
+    """
+    finished, objectives = store.finished(), problem.settings.objectives
+    values = finished[confirmed.number][0]
+    tables = problem.space.apply(values)
+    design = design_from_dict(tables["design"])
+    best = folder / "best"
+    (best / "urdf").mkdir(parents=True, exist_ok=True)
+    save_design(design, best / "design.toml")
+    (best / "controller.toml").write_text(tomli_w.dumps(tables["controller"]))
+    for name, text in urdf_files(design).items():
+        (best / "urdf" / name).write_text(text)
+
+    curves = {"this search": objective_values(problem, finished)}
+    curves |= {name: objective_values(p, done) for name, (p, done) in others.items()}
+    draw_progress(curves, objectives[0], folder / "progress.png")
+    pictures = ["![progress](progress.png)"]
+    shares = importances(store, problem)
+    if shares:
+        draw_importance(shares, folder / "importance.png")
+        pictures.append("![parameter importance](importance.png)")
+    if len(objectives) > 1:
+        kept, losses = losses_of(problem, finished)
+        if kept:
+            draw_pareto(losses, pareto(losses), objectives, folder / "pareto.png")
+            pictures.append("![Pareto front](pareto.png)")
+    found = confirmed.rows["found", TIME_STEP]
+    draw_best_gait(design, tables["controller"], problem.task, FIRST_SEED, found, folder / "gait.png")
+    pictures.append("![gait of the best design](gait.png)")
+
+    columns = {f"{who}, {1e3 * dt:g} ms": summary(rows) for (who, dt), rows in confirmed.rows.items()}
+    met = problem.task.goal.violation({k: float(np.mean([r[k] for r in found])) for k in found[0]}) <= 0
+    data = {"folder": str(folder), "goal": str(problem.task.goal), "goal_met": met, "trial": confirmed.number,
+            "trials": len(finished), "seconds": store.noted("seconds"), "confirmed": columns, "importance": shares,
+            "best_so_far": {name: _last_best(c, objectives[0].maximise) for name, c in curves.items()}}  # fmt: skip
+    (folder / "report.md").write_text("\n".join(_lines(problem, store, values, data, pictures)) + "\n")
+    return data
+
+
+def _last_best(values: FloatArray, maximise: bool) -> float | None:
+    if np.isnan(values).all():
+        return None
+    return float(np.nanmax(values) if maximise else np.nanmin(values))
+
+
+def _lines(problem: Problem, store: Store, values: dict[str, Any], data: dict[str, Any], pictures: list[str]) -> Any:
+    settings, columns = problem.settings, data["confirmed"]
+    yield f"# Search for a design: {problem.task.motion}"
+    yield ""
+    yield (f"Goal: mean {problem.task.goal} over {next(iter(columns.values()))['episodes']} new starts. "
+           f"**{'Met' if data['goal_met'] else 'Not met'}** by trial {data['trial']} of {data['trials']}; "
+           f"{settings.sampler}, seed {settings.seed}, {(data['seconds'] or 0) / 60:.0f} minutes.")  # fmt: skip
+    yield ""
+    yield from _table(["", *columns], [[what, *(c[key] for c in columns.values())] for key, what in _ROWS.items()])
+    yield ""
+    if len(data["best_so_far"]) > 1:
+        yield from _table(["search", f"best {settings.objectives[0]}, as searched"], list(data["best_so_far"].items()))
+        yield ""
+    yield "## Where it began and what was found"
+    yield ""
+    scalars = [d for d in problem.space.dimensions if d.entry is None]
+    shown = {d.name: (lambda v, d=d: d.choices[int(v)] if d.choices else v) for d in scalars}
+    yield from _table(["field", "start", "found", "range"], [
+        [d.name, shown[d.name](problem.space.start[d.name]), shown[d.name](values[d.name]),
+         "choices" if d.choices else f"{d.low:.4g} to {d.high:.4g}"] for d in scalars
+    ])  # fmt: skip
+    vectors = sorted({".".join(d.path) for d in problem.space.dimensions if d.entry is not None})
+    if vectors:
+        yield ""
+        yield f"Searched entry by entry, in best/controller.toml: {', '.join(vectors)}."
+    yield ""
+    yield from pictures
+    yield ""
+    yield "## To repeat it"
+    yield ""
+    yield "best/design.toml, best/controller.toml and best/urdf/ are the robot that was found. The task file:"
+    yield ""
+    yield from ("    " + line for line in store.problem_text.splitlines())
+    yield ""
+    names = ("tensegym", "pybullet", "optuna", "numpy", "numba")
+    yield f"Python {platform.python_version()}, " + ", ".join(f"{name} {version(name)}" for name in names) + "."
+
+
+def _table(header: list[str], rows: list[Any]) -> Any:
+    cells = [[f"{c:.4g}" if isinstance(c, float) else str(c) for c in row] for row in rows]
+    yield "| " + " | ".join(header) + " |"
+    yield "|" + "---|" * len(header)
+    yield from ("| " + " | ".join(row) + " |" for row in cells)
