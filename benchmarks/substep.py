@@ -1,122 +1,151 @@
-"""What a substep of the rolling robot costs against the engine's own step and against a plain Python cable loop.
+"""The substep of a rolling robot beside the engine's own step, a Python cable loop and MuJoCo's step of its twin.
 
-The three run in turn on the same motion, block by block in one process pinned to one core, so that the machine's
-drifting speed cancels in the ratios. Prints a table; ``--json FILE`` writes the rows too.
+The robot rolls under random commands, and all step the same motion: ours in the compiled loop; the engine's own step on
+the recorded forces of that block, from its saved start; the reference loop in Python; the twin from where the robot
+stands. Seconds are those of this thread's processor time, which other programs on the machine do not add to.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
-import os
-import platform
 import time
-from importlib.metadata import version
-from pathlib import Path
-
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pybullet
+from numba import njit
+from timing import Row, in_turn, row
 
-from tensegym.cable_forces import LOCAL_A, LOCAL_B
+from tensegym.cable_forces import DAMPING, LOCAL_A, LOCAL_B, STIFFNESS
 from tensegym.design import Payload, RobotDesign
-from tensegym.report import table
+from tensegym.direct_calls import client_handle, push_and_step
 from tensegym.robot import TensegrityRobot
 
 BLOCK = 100  # substeps
 
 
-def bare_block(robot: TensegrityRobot) -> float:
-    """Seconds inside stepSimulation while the robot goes on moving as it does."""
-    spent = 0.0
-    step = pybullet.stepSimulation
-
-    def timed(client: int) -> None:
-        nonlocal spent
-        began = time.perf_counter()
-        step(client)
-        spent += time.perf_counter() - began
-
-    pybullet.stepSimulation = timed
-    try:
-        robot.step(BLOCK)
-    finally:
-        pybullet.stepSimulation = step
-    return spent
+@njit
+def _replay(client, total, bodies, pinned, poses, wrenches):
+    handle = client_handle(client, total)
+    for i in range(len(poses)):
+        push_and_step(handle, bodies, pinned, poses[i], wrenches[i])
 
 
-def whole_block(robot: TensegrityRobot) -> float:
-    began = time.perf_counter()
-    robot.step(BLOCK)
-    return time.perf_counter() - began
+class Rolling:
+    """Contestants on one motion: each method steps a block and returns its microseconds a substep."""
+
+    def __init__(self, design: RobotDesign, dt: float) -> None:
+        self.ours = TensegrityRobot(design, dt=dt)
+        self.reference = TensegrityRobot(design, dt=dt, compiled=False)
+        self.naive_robot = TensegrityRobot(design, dt=1e-3)
+        self.rng = np.random.default_rng(0)
+        for robot in (self.ours, self.reference):
+            robot.reset(0)
+            robot.step(500)
+        self.poses = np.zeros((BLOCK, *self.ours.world.poses.shape))
+        self.wrenches = np.zeros((BLOCK, len(self.ours.world.poses), 6))
+        _replay(-1, 0, *self.reference.world.engine[3:5], self.poses[:0], self.wrenches[:0])  # compiles it
+
+    def close(self) -> None:
+        for robot in (self.ours, self.reference, self.naive_robot):
+            robot.close()
+
+    def substep(self) -> float:
+        commands = self.rng.uniform(0, 1, len(self.ours.drives)) * self.ours.command_limit
+        self.ours.command(commands)
+        self.reference.command(commands)
+        began = time.thread_time()
+        self.ours.step(BLOCK)
+        return (time.thread_time() - began) / BLOCK * 1e6
+
+    def python_loop(self) -> float:
+        """The reference path, and on the way what `bare_step` replays."""
+        world, state = self.reference.world, self.reference.world.save()
+        spent = 0.0
+        for i in range(BLOCK):
+            began = time.thread_time()
+            self.reference.step()
+            spent += time.thread_time() - began
+            self.poses[i], self.wrenches[i] = world.poses, self.reference._wrenches
+        end = world.save()
+        world.restore(state)
+        self.bare = self._replayed()
+        world.restore(end)
+        for kept in (state, end):
+            pybullet.removeState(kept, physicsClientId=world.client)
+        return spent / BLOCK * 1e6
+
+    def _replayed(self) -> float:
+        client, total, _, bodies, pinned, *_ = self.reference.world.engine
+        began = time.thread_time()
+        _replay(client, total, bodies, pinned, self.poses, self.wrenches)
+        return time.thread_time() - began
+
+    def bare_step(self) -> float:
+        """stepSimulation and the forces that make the motion the same (some 0.4 us of it)."""
+        return self.bare / BLOCK * 1e6
+
+    def naive(self) -> float:
+        """The obvious way at 1 ms, from where ours stands: a Python loop over cables, two forces each, end points by
+        multiplyTransforms."""
+        robot = self.naive_robot
+        world, cables, client = robot.world, robot.cables, robot.world.client
+        world.place(self.ours.poses_in_world[: len(world.bodies)], self.ours.velocities_in_world()[: len(world.bodies)])
+        natural, last = self.ours.natural_lengths.copy(), self.ours.lengths.copy()
+        began = time.thread_time()
+        for _ in range(BLOCK):
+            poses = [pybullet.getBasePositionAndOrientation(body, client) for body in world.bodies]
+            for c, (a, b) in enumerate(cables.ends):
+                params = cables.params[c]
+                pa, _ = pybullet.multiplyTransforms(*poses[a], params[LOCAL_A].tolist(), [0, 0, 0, 1])
+                pb, _ = pybullet.multiplyTransforms(*poses[b], params[LOCAL_B].tolist(), [0, 0, 0, 1])
+                span = np.subtract(pb, pa)
+                length = np.linalg.norm(span)
+                stretch, rate = length - natural[c], (length - last[c]) / robot.dt
+                tension = max(0.0, params[STIFFNESS] * stretch + params[DAMPING] * rate) if stretch > 0 else 0.0
+                last[c] = length
+                force = tension / length * span
+                pybullet.applyExternalForce(world.bodies[a], -1, force, pa, pybullet.WORLD_FRAME, client)
+                pybullet.applyExternalForce(world.bodies[b], -1, -force, pb, pybullet.WORLD_FRAME, client)
+            pybullet.stepSimulation(client)
+        return (time.thread_time() - began) / BLOCK * 1e6
 
 
-def naive_block(robot: TensegrityRobot) -> float:
-    """The obvious way: a Python loop over cables, two forces each, end points by multiplyTransforms."""
-    world, cables, client = robot.world, robot.cables, robot.world.client
-    natural, last = robot.natural_lengths, robot.lengths.copy()
-    began = time.perf_counter()
-    for _ in range(BLOCK):
-        poses = [pybullet.getBasePositionAndOrientation(body, client) for body in world.bodies]
-        for c, (a, b) in enumerate(cables.ends):
-            pa, _ = pybullet.multiplyTransforms(*poses[a], cables.params[c, LOCAL_A].tolist(), [0, 0, 0, 1])
-            pb, _ = pybullet.multiplyTransforms(*poses[b], cables.params[c, LOCAL_B].tolist(), [0, 0, 0, 1])
-            span = np.subtract(pb, pa)
-            length = np.linalg.norm(span)
-            stretch = length - natural[c]
-            tension = max(0.0, 300.0 * stretch + 5.0 * (length - last[c]) / robot.dt) if stretch > 0 else 0.0
-            last[c] = length
-            force = tension / length * span
-            pybullet.applyExternalForce(world.bodies[a], -1, force, pa, pybullet.WORLD_FRAME, client)
-            pybullet.applyExternalForce(world.bodies[b], -1, -force, pb, pybullet.WORLD_FRAME, client)
-        pybullet.stepSimulation(client)
-    return time.perf_counter() - began
+def twin_block(rolling: Rolling, design: RobotDesign, dt: float) -> Callable[[], float]:
+    """MuJoCo, Euler: from where our robot stands now, its rest lengths moving there as ours do, ten steps at a time."""
+    from twin import Twin
+
+    twin = Twin(design, dt)
+
+    def measure() -> float:
+        twin.place(rolling.ours.poses_in_world)
+        twin.set_rest_lengths(rolling.ours.natural_lengths)
+        began = time.thread_time()
+        twin.step(BLOCK)
+        return (time.thread_time() - began) / BLOCK * 1e6
+
+    return measure
 
 
-def measure(design: RobotDesign, dt: float, rounds: int) -> dict[str, np.ndarray]:
-    """Microseconds a substep, one value a round, for each way."""
-    rng = np.random.default_rng(0)
-    spent: dict[str, list[float]] = {"substep": [], "bare step": [], "naive loop": []}
-    with TensegrityRobot(design, dt=dt) as robot, TensegrityRobot(design, dt=1e-3) as naive:
-        robot.reset(0)
-        robot.step(500)
-        for _ in range(rounds):
-            robot.command(rng.uniform(0, 1, len(robot.drives)) * robot.command_limit)
-            spent["substep"].append(whole_block(robot))
-            spent["bare step"].append(bare_block(robot))
-            naive.reset(0)
-            spent["naive loop"].append(naive_block(naive))
-    return {name: np.array(values) / BLOCK * 1e6 for name, values in spent.items()}
+CASES = (("1 ms explicit", RobotDesign(), 1e-3), ("2 ms implicit", RobotDesign(), 2e-3),
+         ("1 ms, payload", RobotDesign(payload=Payload()), 1e-3),
+         ("2 ms, payload", RobotDesign(payload=Payload()), 2e-3))  # fmt: skip
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=60)
-    parser.add_argument("--json", type=Path)
-    arguments = parser.parse_args()
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
-    rows = []
-    for name, design, dt in (
-        ("explicit, 1 ms", RobotDesign(), 1e-3),
-        ("implicit, 2 ms", RobotDesign(), 2e-3),
-        ("implicit, 2 ms, payload", RobotDesign(payload=Payload()), 2e-3),
-    ):
-        spent = measure(design, dt, arguments.rounds)
-        for peer in ("bare step", "naive loop"):
-            ratios = np.quantile(spent["substep"] / spent[peer], [0.1, 0.5, 0.9])
-            rows.append({"name": f"{name} / {peer}", "ours": float(np.median(spent["substep"])),
-                         "peer": float(np.median(spent[peer])), "unit": "us a substep", "ratio": float(ratios[1]),
-                         "spread": [float(ratios[0]), float(ratios[2])]})  # fmt: skip
-    print(table(["substep / peer", "ours us", "peer us", "ratio", "10 to 90 %"],
-                [[r["name"], r["ours"], r["peer"], r["ratio"], f"{r['spread'][0]:.3g} to {r['spread'][1]:.3g}"]
-                 for r in rows]))  # fmt: skip
-    if arguments.json:
-        machine = {"processor": platform.processor() or platform.machine(), "python": platform.python_version()}
-        machine |= {name: version(name) for name in ("pybullet", "numba", "numpy")}
-        arguments.json.write_text(json.dumps({"machine": machine, "rows": rows}, indent=1))
-
-
-if __name__ == "__main__":
-    main()
+def rows(rounds: int) -> Iterator[Row]:
+    """Ratios of the substep, case by case."""
+    unit = "us a substep"
+    for name, design, dt in CASES:
+        rolling = Rolling(design, dt)
+        contestants = {"substep": rolling.substep, "python": rolling.python_loop, "bare": rolling.bare_step,
+                       "naive": rolling.naive}  # fmt: skip
+        if dt == 1e-3:
+            contestants["MuJoCo"] = twin_block(rolling, design, dt)
+        try:
+            seen = in_turn(contestants, rounds)
+        finally:
+            rolling.close()
+        yield row(f"substep, {name} / bare stepSimulation", seen["substep"], seen["bare"], unit, 2.2)
+        yield row(f"naive Python loop / substep, {name}", seen["naive"], seen["substep"], unit, 10, at_least=True)
+        yield row(f"Python calls, one kernel / substep, {name}", seen["python"], seen["substep"], unit)
+        if "MuJoCo" in seen:
+            yield row(f"substep, {name} / MuJoCo Euler step of the twin", seen["substep"], seen["MuJoCo"], unit, 1.4)

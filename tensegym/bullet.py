@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from . import direct_calls
 from .errors import SimulationError
+from .state_window import find_window
 from .structure import FloatArray, IntArray
 
 
@@ -90,6 +91,7 @@ class World:
         self._pack, self._pack_angles = struct.Struct("0d"), struct.Struct("0d")
         self.poses, self.angles = np.zeros((0, 7)), np.zeros(0)
         self._numbers, self._pinned_rows = np.zeros(0, dtype=np.int32), np.zeros(0, dtype=int)
+        self._window: IntArray | None = None
         pybullet.setGravity(0, 0, -gravity, physicsClientId=self.client)
         pybullet.setTimeStep(dt, physicsClientId=self.client)
         pybullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=self.client)
@@ -163,11 +165,13 @@ class World:
         return self.poses, self.angles
 
     @property
-    def engine(self) -> tuple[int, int, IntArray, IntArray, FloatArray, FloatArray]:
-        """Client, number of bodies in it, bodies' numbers, rows of those with two links, poses, angles: what
-        `substeps.run` works on."""
+    def engine(self) -> tuple[int, int, IntArray, IntArray, IntArray, FloatArray, FloatArray]:
+        """What `substeps.run` works on: client, number of bodies in it, window onto their states, bodies' numbers, rows
+        of those with two links, poses, angles."""
         total = len(self.bodies) + (self.ground is not None)
-        return self.client, total, self._numbers, self._pinned_rows, self.poses, self.angles
+        if self._window is None:
+            self._window = find_window(direct_calls.client_handle(self.client, total), self._numbers)
+        return self.client, total, self._window, self._numbers, self._pinned_rows, self.poses, self.angles
 
     def step(self, wrenches: FloatArray) -> None:
         """Apply force and moment (l, 6) about the links' centres, world axes, and advance one time step.

@@ -12,17 +12,18 @@ from .direct_calls import client_handle, push_and_step, read_states
 
 
 @njit(cache=True)
-def run(count, client, total, bodies, pinned, poses, angles, wrenches, *arguments):
+def run(count, client, total, window, bodies, pinned, poses, angles, wrenches, *arguments):
     """Take ``count`` time steps of a DIRECT client that holds ``total`` bodies; returns how many were taken.
 
-    bodies (b,) are their numbers, pinned (p,) rows of those with two links; ``arguments`` are the kernel's after
-    ``wrenches``. Fewer steps than asked for mean that the client, or a body in it, is gone.
+    window as `state_window` finds it; bodies (b,) are their numbers, pinned (p,) rows of those with two links;
+    ``arguments`` are the kernel's after ``wrenches``. Fewer steps than asked for mean that the client, or a body in it,
+    is gone.
     """
     handle = client_handle(client, total)
     if handle == 0:
         return 0
     for done in range(count):
-        if not read_states(handle, bodies, pinned, poses, angles):
+        if not read_states(handle, window, bodies, pinned, poses, angles):
             return done
         substep(poses, angles, wrenches, *arguments)
         push_and_step(handle, bodies, pinned, poses, wrenches)

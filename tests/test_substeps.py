@@ -1,12 +1,15 @@
 """The compiled substep loop against the Python calls, which are the reference; and where it cannot work."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from tensegym import direct_calls
+from tensegym import direct_calls, state_window
 from tensegym.design import Payload, RobotDesign, flexible_design
 from tensegym.errors import SimulationError
 from tensegym.robot import TensegrityRobot
+from tensegym.state_window import NONE
 
 needs_symbols = pytest.mark.skipif(not direct_calls.AVAILABLE, reason="this PyBullet has no symbol table")
 
@@ -51,6 +54,34 @@ def test_a_handle_is_given_only_for_the_client_meant():
         assert direct_calls.client_handle(client, total + 1) == 0  # another world, or a body gone
         for nobody in (client + 1, -1, 10**6):
             assert direct_calls.client_handle(nobody, total) == 0
+
+
+@needs_symbols
+def test_states_are_read_where_the_engine_writes_them_or_else_copied():
+    with TensegrityRobot(flexible_design(), compiled=True) as robot:
+        robot.step(20)
+        client, total, window, bodies, pinned, poses, angles = robot.world.engine
+        assert window.all()
+        handle = direct_calls.client_handle(client, total)
+        there, copied = np.zeros((2, *poses.shape))
+        bends = np.zeros((2, len(angles)))
+        assert direct_calls.read_states(handle, window, bodies, pinned, there, bends[0])
+        assert direct_calls.read_states(handle, NONE, bodies, pinned, copied, bends[1])
+        np.testing.assert_array_equal(there, copied)
+        np.testing.assert_array_equal(bends[0], bends[1])
+        unknown = np.array([bodies[0], 77], dtype=np.int32)
+        for place in (window, NONE):
+            assert not direct_calls.read_states(handle, place, unknown, pinned[:0], there, bends[0])
+
+
+@needs_symbols
+def test_without_a_window_the_states_are_copied(monkeypatch):
+    monkeypatch.setattr(state_window, "_MEMORY", Path("/nonexistent"))
+    with TensegrityRobot(compiled=True) as robot, TensegrityRobot(compiled=False) as reference:
+        assert not robot.world.engine[2].any()
+        for each in (robot, reference):
+            each.step(50)
+        np.testing.assert_array_equal(robot.poses_in_world, reference.poses_in_world)
 
 
 def test_without_the_symbols_python_does_it(monkeypatch):
