@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -42,7 +43,7 @@ class Observation:
 
     parts: tuple[Part, ...]
 
-    @property
+    @cached_property
     def bound(self) -> FloatArray:
         """(size,) largest absolute value of each entry."""
         return np.concatenate([np.full(p.size, p.bound) for p in self.parts]).astype(np.float32)

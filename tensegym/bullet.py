@@ -92,6 +92,7 @@ class World:
         self.poses, self.angles = np.zeros((0, 7)), np.zeros(0)
         self._numbers, self._pinned_rows = np.zeros(0, dtype=np.int32), np.zeros(0, dtype=int)
         self._window: IntArray | None = None
+        self._stale = True  # whether the engine has moved since `poses` and `angles` were read
         pybullet.setGravity(0, 0, -gravity, physicsClientId=self.client)
         pybullet.setTimeStep(dt, physicsClientId=self.client)
         pybullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=self.client)
@@ -116,6 +117,7 @@ class World:
             pybullet.setJointMotorControl2(body, 0, pybullet.VELOCITY_CONTROL, force=0, physicsClientId=self.client)
             self.pinned.append(len(self.bodies))
         self.bodies.append(body)
+        self._stale = True
         self.poses, self.angles = np.zeros((len(self.bodies) + len(self.pinned), 7)), np.zeros(len(self.pinned))
         self._pack = struct.Struct(f"{7 * len(self.bodies)}d")
         self._pack_angles = struct.Struct(f"{len(self.pinned)}d")
@@ -139,6 +141,7 @@ class World:
         rates: FloatArray | None = None,
     ) -> None:  # fmt: skip
         """Set every first link's pose (b, 7) and velocity (b, 6) linear, angular; pins' angles and rates, else 0."""
+        self._stale = True
         for body, pose, velocity in zip(self.bodies, poses.tolist(), velocities.tolist(), strict=True):
             pybullet.resetBasePositionAndOrientation(body, pose[:3], pose[3:], physicsClientId=self.client)
             pybullet.resetBaseVelocity(body, velocity[:3], velocity[3:], physicsClientId=self.client)
@@ -150,8 +153,14 @@ class World:
     # -- the substep ----------------------------------------------------------------------------------------------
 
     def read(self) -> tuple[FloatArray, FloatArray]:
-        """Refresh and return `poses` (l, 7), position [m] and quaternion xyzw of every link's centre of mass in the
+        """Up-to-date `poses` (l, 7), position [m] and quaternion xyzw of every link's centre of mass in the
         world, and `angles` (p,) of the pins [rad]. The rows of second links follow from both: the caller fills them."""
+        if self._stale:
+            self._read()
+            self._stale = False
+        return self.poses, self.angles
+
+    def _read(self) -> None:
         read, client = pybullet.getBasePositionAndOrientation, self.client
         values: list[float] = []
         for body in self.bodies:
@@ -162,12 +171,12 @@ class World:
         if self.pinned:
             angles = [pybullet.getJointState(body, 0, client)[0] for body in self._second_links]
             self._pack_angles.pack_into(self.angles.data, 0, *angles)
-        return self.poses, self.angles
 
     @property
     def engine(self) -> tuple[int, int, IntArray, IntArray, IntArray, FloatArray, FloatArray]:
         """What `substeps.run` works on: client, number of bodies in it, window onto their states, bodies' numbers, rows
-        of those with two links, poses, angles."""
+        of those with two links, poses, angles. Whoever takes it may step the world."""
+        self._stale = True
         total = len(self.bodies) + (self.ground is not None)
         if self._window is None:
             self._window = find_window(direct_calls.client_handle(self.client, total), self._numbers)
@@ -178,6 +187,7 @@ class World:
 
         Of a second link the moment alone: its force has been carried over to the first one.
         """
+        self._stale = True
         force, torque, client = pybullet.applyExternalForce, pybullet.applyExternalTorque, self.client
         rows = wrenches.tolist()
         for body, pose, w in zip(self.bodies, self.poses.tolist(), rows, strict=False):
@@ -199,6 +209,7 @@ class World:
 
     def advance(self) -> None:
         """One time step under the forces already given."""
+        self._stale = True
         pybullet.stepSimulation(self.client)
 
     # -- state and pictures ---------------------------------------------------------------------------------------
@@ -208,6 +219,7 @@ class World:
         return pybullet.saveState(physicsClientId=self.client)
 
     def restore(self, state: int) -> None:
+        self._stale = True
         pybullet.restoreState(stateId=state, physicsClientId=self.client)
 
     def contacts(self) -> list[tuple[Any, ...]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
@@ -117,9 +118,21 @@ def supporting_face(faces: Faces, nodes: FloatArray, centre: FloatArray) -> int:
     nodes (n, 3) and centre (3,) in the world, as deformed now; the triangles stay those of the structure at rest. The
     lowest where the line meets several or, on a body bent out of shape, none.
     """
-    corners = nodes[faces.triangles]
-    x, y = (corners[:, :, 0] - centre[0]).T, (corners[:, :, 1] - centre[1]).T
-    cross = np.stack([x[i] * y[(i + 1) % 3] - x[(i + 1) % 3] * y[i] for i in range(3)])
-    under = (cross >= 0).all(axis=0) | (cross <= 0).all(axis=0)
-    heights = corners[:, :, 2].mean(axis=1)
-    return int(np.where(under, heights, heights + 1e3).argmin())
+    return _face_under(faces.triangles, nodes, centre)
+
+
+@njit(cache=True)
+def _face_under(triangles, nodes, centre):
+    best, lowest = 0, np.inf
+    for t in range(len(triangles)):
+        above, below, height = True, True, 0.0
+        for i in range(3):
+            a, b = nodes[triangles[t, i]], nodes[triangles[t, (i + 1) % 3]]
+            cross = (a[0] - centre[0]) * (b[1] - centre[1]) - (b[0] - centre[0]) * (a[1] - centre[1])
+            above, below = above and cross >= 0, below and cross <= 0
+            height += a[2] / 3
+        if not (above or below):
+            height += 1e3
+        if height < lowest:
+            best, lowest = t, height
+    return best

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -44,8 +45,8 @@ class GaitMetrics:
 
     def as_dict(self) -> dict[str, float | int | bool | None]:
         """Plain JSON types; an infinite cost of transport becomes None."""
-        data = asdict(self) | {"audit_passed": self.audit_passed}
-        return {k: (None if isinstance(v, float) and not np.isfinite(v) else v) for k, v in data.items()}
+        data = vars(self) | {"audit_passed": self.audit_passed}
+        return {name: value if math.isfinite(value) else None for name, value in data.items()}
 
 
 class DriveMeter:
@@ -76,6 +77,7 @@ class GaitMeter:
     def __init__(self, robot: TensegrityRobot, direction: FloatArray) -> None:
         self.robot = robot
         self.direction = np.asarray(direction, dtype=float)
+        self._weight, self._length = robot.design.mass * robot.design.gravity, robot.design.length
         self._start = robot.centre_of_mass_in_world()
         self._start_time = robot.time
         self._start_account = robot.account()
@@ -104,17 +106,16 @@ class GaitMeter:
         along = float(self.direction @ (robot.centre_of_mass_in_world() - self._start)[:2])
         path = max(now.centre_path - start.centre_path, 1e-9)
         energy = now.electrical_energy - start.electrical_energy
-        weight = robot.design.mass * robot.design.gravity
         return GaitMetrics(
             duration=duration,
             speed=along / duration,
-            speed_lps=along / duration / robot.design.length,
+            speed_lps=along / duration / self._length,
             path=path,
             tips=self.tips,
             slip_share=(now.foot_path - start.foot_path) / path,
             slip_share_sum=(now.foot_path_sum - start.foot_path_sum) / path,
             energy=energy,
             drive_work=now.drive_work - start.drive_work,
-            cost_of_transport=energy / (weight * along) if along > 0 else float("inf"),
+            cost_of_transport=energy / (self._weight * along) if along > 0 else float("inf"),
             audit_excess=self._excess,
         )

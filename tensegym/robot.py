@@ -206,7 +206,7 @@ class TensegrityRobot:
 
     # -- step -----------------------------------------------------------------------------------------------------
 
-    @property
+    @cached_property
     def command_limit(self) -> FloatArray:
         """(w,) spool angle [rad] of the deepest allowed pull of each stiff cable."""
         design = self.design
@@ -239,7 +239,8 @@ class TensegrityRobot:
     def poses_in_world(self) -> FloatArray:
         """(b, 7) position [m] and quaternion xyzw of every body, now."""
         poses, angles = self.world.read()
-        second_poses(self.cables.pins.bodies, self.cables.pins.params, angles, poses)
+        if len(angles):
+            second_poses(self.cables.pins.bodies, self.cables.pins.params, angles, poses)
         return poses
 
     def velocities_in_world(self) -> FloatArray:
@@ -298,6 +299,8 @@ class TensegrityRobot:
 
     def flexure_energy(self) -> float:
         """Energy stored in the flexures of split rods [J], now."""
+        if not len(self.flexure_moments):
+            return 0.0
         stiffness = self.cables.params[self.cables.first_flexure :, kernel.STIFFNESS]
         return float(0.5 * stiffness @ self.flexure_angles**2)
 
