@@ -12,7 +12,7 @@ from typing import Any
 
 from tensegym.errors import InputError
 from tensegym.report import Report, table
-from tensegym.search.engine import engine
+from tensegym.search.engine import check_engine, engine
 from tensegym.search.evaluate import Outcome
 from tensegym.search.loop import run_search
 from tensegym.search.problem import Problem, load_problem, problem_from
@@ -38,9 +38,12 @@ class _Search:
     storage: str | None = None
     """Database URL; default: study.db in the folder."""
 
-    def _go(self, problem: Problem, store: Store, budget: int, out: Path) -> Report:
+    def _check(self) -> None:
         if self.jobs < 1:
             raise InputError(f"jobs = {self.jobs} must be 1 or more")
+        check_engine(self.engine)
+
+    def _go(self, problem: Problem, store: Store, budget: int, out: Path) -> Report:
         from tqdm import tqdm
 
         store.note("budget", budget)
@@ -82,6 +85,7 @@ class Run(_Search):
     """Folder for the study; must not hold another one."""
 
     def run(self) -> Report:
+        self._check()
         if self.budget < 1:
             raise InputError(f"budget = {self.budget} must be 1 or more")
         if self.out.exists() and not self.out.is_dir():
@@ -109,6 +113,7 @@ class Resume(_Search):
     """Trials in all; default: as before."""
 
     def run(self) -> Report:
+        self._check()
         problem, store = open_search(self.folder, self.storage)
         return self._go(problem, store, self.budget or store.noted("budget"), self.folder)
 

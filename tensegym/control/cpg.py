@@ -27,8 +27,9 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from tensegym.design import RobotDesign, bounded, check_ranges
+from tensegym.design import RobotDesign
 from tensegym.errors import DesignError
+from tensegym.parameters import bounded, check_ranges
 from tensegym.robot import TensegrityRobot
 from tensegym.structure import FloatArray, IntArray
 from tensegym.symmetry import symmetries

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
@@ -80,10 +81,14 @@ class RayEngine:
             yield from self._ray.get(ready)
 
 
+def check_engine(name: str) -> None:
+    """Raises InputError for an engine there is not, ModuleNotFoundError where its library is missing."""
+    if name not in ("joblib", "ray"):
+        raise InputError(f"engine = {name!r} is not one of joblib, ray")
+    importlib.import_module(name)
+
+
 def engine(name: str, jobs: int, address: str | None = None) -> Engine:
-    """By name: joblib or ray. Raises InputError, or ModuleNotFoundError where its library is missing."""
-    if name == "joblib":
-        return JoblibEngine(jobs)
-    if name == "ray":
-        return RayEngine(jobs, address)
-    raise InputError(f"engine = {name!r} is not one of joblib, ray")
+    """By name: joblib or ray. Raises as `check_engine`, or InputError where no cluster answers."""
+    check_engine(name)
+    return RayEngine(jobs, address) if name == "ray" else JoblibEngine(jobs)

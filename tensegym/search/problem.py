@@ -16,16 +16,16 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, fields, replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 import tomli_w
 
-from tensegym.design import bounded, check_ranges
 from tensegym.design_file import design_from_dict, design_to_dict
 from tensegym.errors import DesignError, InputError, StructureError
+from tensegym.parameters import Checked, bounded, check_ranges
 
 from .controllers import check_controller
 from .measure import Bound, Objective
@@ -147,7 +147,7 @@ def _check_ends(space: Space) -> None:
             try:
                 if dimension.path[0] == "controller":
                     check_controller(tables["controller"])
-                elif is_dataclass(group) and len(dimension.path) == 3 and not dimension.choices:
+                elif isinstance(group, Checked) and len(dimension.path) == 3 and not dimension.choices:
                     replace(group, **{dimension.path[2]: value})  # type: ignore[type-var]
                 else:
                     design_from_dict(tables["design"])

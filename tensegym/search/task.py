@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
-from tensegym.design import bounded, check_ranges
 from tensegym.errors import DesignError, InputError
+from tensegym.parameters import bounded, check_ranges
 from tensegym.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP
 
 from .measure import Bound

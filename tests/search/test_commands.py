@@ -1,0 +1,88 @@
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from tensegym.search.store import Store
+from tests.conftest import assert_refused
+
+
+def design(cli, *argv):
+    status, out, err = cli("design", *argv, "--json")
+    assert status == 0, err
+    return json.loads(out)
+
+
+def test_run_status_resume_report(cli, tiny_file, tmp_path):
+    out = tmp_path / "study"
+    data = design(cli, "run", "--task", tiny_file, "--budget", 3, "--out", out)
+    assert data["trials"] == data["budget"] == 3
+    assert design(cli, "status", "--folder", out)["best_trial"] == data["best_trial"]
+    assert design(cli, "resume", "--folder", out, "--budget", 4)["trials"] == 4
+    report = design(cli, "report", "--folder", out, "--episodes", 2, "--against", out)
+    assert set(report["confirmed"]) == {"start, 2 ms", "start, 1 ms", "found, 2 ms", "found, 1 ms"}
+    text = (out / "report.md").read_text()
+    assert "design.elastic_cable.pretension" in text and "![gait" in text
+    for name in ("progress.png", "gait.png", "best/design.toml", "best/controller.toml", "best/urdf/payload.urdf"):
+        assert (out / name).is_file() == (name != "best/urdf/payload.urdf")
+    assert list((out / "best" / "urdf").glob("*.urdf"))
+
+
+def test_a_killed_search_loses_only_what_was_in_flight(tiny_file, tmp_path):
+    out = tmp_path / "study"
+    start = [sys.executable, "-c", "from tensegym.cli import main; main()", "design"]
+    run = subprocess.Popen([*start, "run", "--task", str(tiny_file), "--budget", "500", "--out", str(out)],
+                           stderr=subprocess.DEVNULL, env=os.environ | {"PYTHONUNBUFFERED": "1"})  # fmt: skip
+    try:
+        for _ in range(600):
+            time.sleep(0.1)
+            if (out / "storage.txt").is_file() and len(before := Store(out, None).finished()) >= 3:
+                break
+    finally:
+        run.send_signal(signal.SIGKILL)
+        run.wait()
+    before = Store(out, None).finished()
+    budget = len(before) + 2
+    subprocess.run([*start, "resume", "--folder", str(out), "--budget", str(budget)], check=True, capture_output=True)
+    store = Store(out, None)
+    after = store.finished()
+    assert len(store.study.get_trials()) == len(after) == budget  # none twice
+    assert {n: after[n] for n in before} == before
+
+
+def test_the_folder_of_another_study_is_refused(cli, tiny_file, tmp_path):
+    out = tmp_path / "study"
+    design(cli, "run", "--task", tiny_file, "--budget", 1, "--out", out)
+    assert_refused(cli("design", "run", "--task", "carry", "--budget", 1, "--out", out), "another task file")
+    assert_refused(cli("design", "run", "--task", tiny_file, "--seed", 3, "--out", out), "another task file")
+
+
+@pytest.mark.parametrize("url", ["postgresql://nobody@127.0.0.1:1/none", "nonsense", "sqlite:////no/such/folder/a.db"])
+def test_a_storage_that_does_not_answer_is_refused(cli, tiny_file, tmp_path, url):
+    out = tmp_path / "study"
+    result = cli("design", "run", "--task", tiny_file, "--out", out, "--storage", url)
+    assert_refused(result, url, "does not answer")
+    assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("argv", "words"),
+    [
+        (["run", "--task", "nowhere.toml"], ["no task file nowhere.toml", "carry"]),
+        (["run", "--budget", "0"], ["budget = 0"]),
+        (["run", "--jobs", "0"], ["jobs = 0"]),
+        (["run", "--engine", "magic"], ["engine = 'magic'", "joblib, ray"]),
+        (["status", "--folder", "nothing"], ["no search in nothing"]),
+        (["resume", "--folder", "nothing"], ["no search in nothing"]),
+        (["report", "--folder", "nothing"], ["no search in nothing"]),
+        (["report", "--episodes", "1"], ["episodes = 1"]),
+    ],
+)
+def test_bad_input(cli, tmp_path, monkeypatch, argv, words):
+    monkeypatch.chdir(tmp_path)
+    assert_refused(cli("design", *argv), *words)
+    assert not list(tmp_path.iterdir())

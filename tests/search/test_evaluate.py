@@ -1,0 +1,111 @@
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import tensegym.search.evaluate as module
+from tensegym.control.cpg import Cpg, CpgController, drive_kinds, fitted_feedback
+from tensegym.design import RobotDesign
+from tensegym.errors import DesignError
+from tensegym.robot import TensegrityRobot
+from tensegym.search.evaluate import Trial, evaluate, run_trial, try_all
+from tensegym.symmetry import symmetries
+
+
+@pytest.fixture
+def trial(tiny):
+    problem = tiny()
+    tables = problem.space.apply(problem.space.start)
+    return Trial(3, tables["design"], tables["controller"], problem.task, (5, 6))
+
+
+def test_an_episode_is_a_pure_function_of_its_four_arguments(trial):
+    alone = [evaluate(RobotDesign(), trial.controller, trial.task, seed) for seed in (5, 6)]
+    assert alone == list(try_all(trial).episodes)
+    assert alone[0] != alone[1]
+    assert run_trial(trial).metrics["speed_lps"] == pytest.approx(np.mean([e["speed_lps"] for e in alone]), abs=0)
+
+
+def test_a_trial_that_is_hopeless_half_way_is_stopped(trial):
+    whole, stopped = run_trial(trial), run_trial(replace(trial, bar=-10.0))
+    assert (whole.episodes, whole.stopped) == (2, False)
+    assert (stopped.episodes, stopped.stopped) == (1, True)
+
+
+def test_an_episode_without_a_tip_is_given_up(trial):
+    task = replace(trial.task, seconds=4.0, patience=0.8)
+    still = trial.controller | {"gain": 0.0, "amplitudes": [0.0, 0.0]}
+    assert evaluate(RobotDesign(), still, task, 5)["duration"] == pytest.approx(0.8)
+
+
+def test_a_refused_design_costs_no_simulation(trial, monkeypatch):
+    monkeypatch.setattr(module, "TensegrityRobot", None)
+    outcome = run_trial(replace(trial, design={"elastic_cable": {"pretension": 1e4}}))
+    assert outcome.refused and "stretches a cable" in outcome.refused
+    assert outcome.episodes == 0
+
+
+def test_a_gait_that_breaks_the_audit_goes_nowhere(trial, monkeypatch):
+    from tensegym import gait
+
+    monkeypatch.setattr(gait, "AUDIT_TOLERANCE", -1.0)  # below what any gait keeps
+    metrics = run_trial(trial).metrics
+    assert metrics["sound"] == metrics["speed_lps"] == metrics["tips"] == 0.0
+
+
+def test_drives_that_rotations_map_onto_each_other_are_of_one_kind():
+    assert drive_kinds(RobotDesign()).tolist() == [0, 1, 0, 1, 1, 0]
+
+
+def test_commands_turn_with_the_robot():
+    design = RobotDesign()
+    with TensegrityRobot(design, dt=4e-3) as robot:
+        robot.reset(2, 0.3)
+        robot.step(40)
+        direction = np.array([0.6, 0.8])
+        angles = CpgController(robot, Cpg(), direction).angles()
+        turned = []
+        for symmetry in symmetries(design):
+            # the same pose with the names of the nodes exchanged
+            nodes = robot.node_positions_in_world()[np.argsort(symmetry.nodes)]
+            renamed = CpgController(robot, Cpg(), direction)
+            robot.node_positions_in_world = lambda nodes=nodes: nodes  # type: ignore[method-assign]
+            turned.append(renamed.angles()[symmetry.drives])
+            del robot.node_positions_in_world
+    assert len(turned) == 3
+    assert np.ptp(angles) > 1
+    for other in turned:
+        np.testing.assert_allclose(other, angles, atol=1e-9)
+
+
+def test_coupling_brings_phases_to_their_lags():
+    with TensegrityRobot(RobotDesign(), dt=4e-3) as robot:
+        parameters = Cpg(lags=(0.0, 1.0), coupling=5.0, frequency=0.7)
+        controller = CpgController(robot, parameters, np.array([1.0, 0.0]))
+        controller.phases = controller.phases + np.array([0.5, -0.4, 0.2, 0.3, -0.6, 0.0])
+        for _ in range(50):
+            controller.angles()
+        ahead = controller.phases - np.array([0.0, 1.0])[drive_kinds(robot.design)]
+    assert np.ptp(ahead) < 1e-6
+    assert ahead.mean() == pytest.approx(2 * math.pi * 0.7 * 50 * 0.4, rel=1e-6)
+
+
+def test_commands_stay_within_the_deepest_pull():
+    with TensegrityRobot(RobotDesign(), dt=4e-3) as robot:
+        angles = CpgController(robot, Cpg(gain=100.0), np.array([1.0, 0.0])).angles()
+        assert ((angles >= 0) & (angles <= robot.command_limit)).all()
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"gain": -1.0}, "Cpg.gain = -1.0 is outside"),
+        ({"lags": (0.0,)}, "want as many lags"),
+        ({"amplitudes": (math.nan, 0.0)}, "must be finite"),
+        ({"amplitudes": (0.0,), "lags": (0.0,), "feedback": fitted_feedback()[:28]}, "the robot has 2"),
+    ],
+)
+def test_bad_generators_are_refused(fields, words):
+    with pytest.raises(DesignError, match=words), TensegrityRobot(RobotDesign(), dt=4e-3) as robot:
+        CpgController(robot, Cpg(**fields), np.array([1.0, 0.0]))
