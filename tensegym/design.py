@@ -16,6 +16,8 @@ from .structure import FloatArray, IntArray, Structure
 if TYPE_CHECKING:
     from .flexure.pin import RodPin
 
+PIN_TOLERANCE = 1.25  # of the buckling load with a split rod's pin over that with its hinge
+
 
 @dataclass(frozen=True)
 class RobotDesign:
@@ -67,7 +69,7 @@ class RobotDesign:
         self._check_flexures()
 
     def _check_flexures(self) -> None:
-        """Refuse rods that the prestress would buckle."""
+        """Refuse rods that the prestress would buckle, and hinges that no pin stands for."""
         if self.flexure is None:
             return
         compression = self.rod_compressions
@@ -79,6 +81,13 @@ class RobotDesign:
                     f"RodFlexure: the prestress compresses rod {a}-{b} by {compression[rod]:.4g} N, over the "
                     f"{limit:.4g} N at which its {self.flexure.hinge} buckles; thicken the hinge (thickness = "
                     f"{self.flexure.thickness:g} m) or lower ElasticCable.pretension"
+                )
+            ratio = self.rod_pin(rod).buckling_ratio
+            if not 1 / PIN_TOLERANCE <= ratio <= PIN_TOLERANCE:
+                raise DesignError(
+                    f"RodFlexure.hinge = {self.flexure.hinge!r} gives way by more than a turn: with a pin in its place "
+                    f"the rod would buckle at {ratio:.3g} times its load, outside [{1 / PIN_TOLERANCE:g}, "
+                    f"{PIN_TOLERANCE:g}]; take a hinge that turns, such as leaf-spring"
                 )
 
     @property

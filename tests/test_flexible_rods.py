@@ -70,6 +70,11 @@ def test_a_hinge_longer_than_the_rod_is_refused():
         as_design({"structure": {"rod_length": 0.3}, "flexure": {"length": 0.31, "thickness": 2e-3}})
 
 
+def test_a_hinge_that_shifts_instead_of_turning_is_refused():
+    with pytest.raises((DesignError, FlexureError), match=r"parallel-guide.*(turns|max_angle)"):
+        RobotDesign(flexure=RodFlexure(hinge="parallel-guide", max_angle=0.01))
+
+
 def test_design_file_round_trip(tmp_path):
     design = RobotDesign(flexure=RodFlexure(hinge="cross-spring", rods="all", height=0.03))
     save_design(design, tmp_path / "d.toml")
