@@ -85,9 +85,9 @@ class RobotDesign:
             ratio = self.rod_pin(rod).buckling_ratio
             if not 1 / PIN_TOLERANCE <= ratio <= PIN_TOLERANCE:
                 raise DesignError(
-                    f"RodFlexure.hinge = {self.flexure.hinge!r} gives way by more than a turn: with a pin in its place "
+                    f"RodFlexure: no pin stands for a {self.flexure.hinge} of length = {self.flexure.length:g} m; with one "
                     f"the rod would buckle at {ratio:.3g} times its load, outside [{1 / PIN_TOLERANCE:g}, "
-                    f"{PIN_TOLERANCE:g}]; take a hinge that turns, such as leaf-spring"
+                    f"{PIN_TOLERANCE:g}]; take a shorter hinge, or one that turns rather than shifts"
                 )
 
     @property
