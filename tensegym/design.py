@@ -85,8 +85,8 @@ class RobotDesign:
             ratio = self.rod_pin(rod).buckling_ratio
             if not 1 / PIN_TOLERANCE <= ratio <= PIN_TOLERANCE:
                 raise DesignError(
-                    f"RodFlexure: no pin stands for a {self.flexure.hinge} of length = {self.flexure.length:g} m; with one "
-                    f"the rod would buckle at {ratio:.3g} times its load, outside [{1 / PIN_TOLERANCE:g}, "
+                    f"RodFlexure: no pin stands for a {self.flexure.hinge} of length = {self.flexure.length:g} m: "
+                    f"with one the rod would buckle at {ratio:.3g} times its load, outside [{1 / PIN_TOLERANCE:g}, "
                     f"{PIN_TOLERANCE:g}]; take a shorter hinge, or one that turns rather than shifts"
                 )
 

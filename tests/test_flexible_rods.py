@@ -69,7 +69,9 @@ def test_a_hinge_longer_than_the_rod_is_refused():
         as_design({"structure": {"rod_length": 0.3}, "flexure": {"length": 0.31, "thickness": 2e-3}})
 
 
-@pytest.mark.parametrize("flexure", [{"hinge": "parallel-guide", "max_angle": 0.01}, {"length": 0.5, "thickness": 3e-3}])
+@pytest.mark.parametrize(
+    "flexure", [{"hinge": "parallel-guide", "max_angle": 0.01}, {"length": 0.5, "thickness": 3e-3}]
+)
 def test_a_hinge_that_no_pin_stands_for_is_refused(flexure):
     with pytest.raises(DesignError, match=r"no pin stands for.*outside \[0\.8, 1\.25\]; take a shorter"):
         RobotDesign(flexure=RodFlexure(**flexure))
