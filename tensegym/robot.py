@@ -86,6 +86,7 @@ class TensegrityRobot:
             raise DesignError(f"dt = {dt:g} s is over the explicit limit of {limit:.3g} s; take integrator='implicit'")
         self.implicit = integrator == "implicit" or (integrator == "auto" and dt > limit)
 
+        self.gravity = np.array([0.0, 0.0, -design.gravity if ground else 0.0])
         self.world = World(dt, design.gravity if ground else 0.0, gui, compiled)
         self._load_bodies()
         if ground:
@@ -204,6 +205,15 @@ class TensegrityRobot:
         self.world.push(velocity)
         self._last_poses[:, :3] -= self.dt * np.asarray(velocity)
 
+    def slope(self, angle: float, uphill: FloatArray) -> None:
+        """Tilt gravity as on a plane that rises by ``angle`` [rad] towards ``uphill``, a horizontal unit vector (2,).
+
+        The ground stays z = 0, and so the frame of all readings is the slope's; it holds until it is changed.
+        """
+        down = -np.array([*(np.sin(angle) * np.asarray(uphill)), np.cos(angle)])
+        self.gravity = self.design.gravity * down
+        self.world.set_gravity(self.gravity.tolist())
+
     # -- step -----------------------------------------------------------------------------------------------------
 
     @cached_property
@@ -278,13 +288,13 @@ class TensegrityRobot:
     def energies(self, velocities: FloatArray | None = None) -> Energies:
         """Kinetic, gravity and elastic energy, flexures' in it, now; pass ``velocities`` (b, 6) when read already."""
         cables = self.cables
-        gravity = self.design.gravity if self.world.ground is not None else 0.0
         v = self.velocities_in_world() if velocities is None else velocities
         flexures = cables.first_flexure
         kinetic, potential, elastic = mechanical_energy(
-            self.poses_in_world, v, cables.masses, cables.inertias, gravity, cables.ends[:flexures], cables.params,
-            self.natural_lengths,
+            self.poses_in_world, v, cables.masses, cables.inertias, -self.gravity[2], cables.ends[:flexures],
+            cables.params, self.natural_lengths,
         )  # fmt: skip
+        potential -= float(cables.masses @ self.poses_in_world[:, :2] @ self.gravity[:2])
         return Energies(kinetic, potential, elastic + self.flexure_energy())
 
     @property

@@ -94,25 +94,37 @@ def progress_loss(task: Task, episodes: list[Episode]) -> float:
     return task.goal.violation(aggregate(episodes))
 
 
-def start_of(robot: TensegrityRobot, task: Task, seed: int) -> FloatArray:
-    """Stand the robot as the episode of a seed begins; returns the wanted direction (2,)."""
+def start_of(robot: TensegrityRobot, task: Task, seed: int) -> tuple[FloatArray, int]:
+    """Stand the robot as the episode of a seed begins; returns the wanted direction (2,) and the face it leads to.
+
+    That face is -1 unless the task is to step onto it.
+    """
     rng = np.random.default_rng(seed)
     face = int(rng.integers(len(robot.faces.triangles)))
     heading, towards = rng.uniform(-math.pi, math.pi, 2)
+    direction, target = np.array([math.cos(towards), math.sin(towards)]), -1
     robot.reset(face, heading)
+    if task.motion == "step":
+        edge = int(rng.integers(3))
+        corners = robot.node_positions_in_world()[robot.faces.triangles[face]][:, :2]
+        across = corners[[edge, (edge + 1) % 3]].mean(axis=0) - corners.mean(axis=0)
+        direction, target = across / np.linalg.norm(across), int(robot.faces.neighbours[face, edge])
+    robot.slope(math.radians(task.slope), direction)
     robot.step(round(task.settle / robot.dt))
-    return np.array([math.cos(towards), math.sin(towards)])
+    return direction, target
 
 
 def _episode(robot: TensegrityRobot, start: Start, task: Task, seed: int) -> Episode:
     sound = True
-    direction = start_of(robot, task, seed)
+    direction, target = start_of(robot, task, seed)
     meter = GaitMeter(robot, direction)
     drives, driver = DriveMeter(robot), start(robot, direction)
     substeps = max(1, round(driver.period / robot.dt))
     metrics = meter.metrics()
     for tick in range(max(1, math.floor(task.seconds / (substeps * robot.dt) + 1e-9))):
         if meter.tips == 0 and tick * substeps * robot.dt >= task.patience:
+            break
+        if target >= 0 and meter.tips > 0:
             break
         try:
             robot.command(driver.angles())
@@ -125,8 +137,9 @@ def _episode(robot: TensegrityRobot, start: Start, task: Task, seed: int) -> Epi
         metrics = meter.metrics()
     sound = sound and metrics.audit_passed
     found = {k: float(v) for k, v in vars(metrics).items()}
-    found |= {"drive_load": drives.load, "mass": robot.design.mass, "weight": robot.design.mass * robot.design.gravity,
-              "sound": float(sound)}  # fmt: skip
+    mass, arrived = robot.design.mass, sound and meter.face == target
+    found |= {"arrived": float(arrived), "drive_load": drives.load, "mass": mass,
+              "weight": mass * robot.design.gravity, "sound": float(sound)}  # fmt: skip
     if not sound:
         found |= {"speed": 0.0, "speed_lps": 0.0, "tips": 0.0}
     if not (sound and math.isfinite(found["cost_of_transport"])):

@@ -11,7 +11,7 @@ from typing import Literal
 from tensegym.errors import InputError
 from tensegym.gait import GaitMetrics
 
-METRICS = (*(f.name for f in fields(GaitMetrics)), "drive_load", "mass")
+METRICS = (*(f.name for f in fields(GaitMetrics)), "arrived", "drive_load", "mass")
 WORST_COST = 1e3  # what an infinite cost of transport counts as in a mean or an objective
 
 

@@ -80,7 +80,7 @@ def draw_best_gait(
 ) -> None:
     """One episode of the found design, and the speeds of all."""
     with TensegrityRobot(design, dt=TIME_STEP) as robot:
-        direction = start_of(robot, task, seed)
+        direction, _ = start_of(robot, task, seed)
         meter, driver = GaitMeter(robot, direction), controller(control)(robot, direction)
         seen: Any = SimpleNamespace(robot=robot, direction=direction, meter=meter)
         recorder = GaitRecorder(seen, frames=False)

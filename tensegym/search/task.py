@@ -17,8 +17,9 @@ class Task:
     """One motion. Raises DesignError naming the field that is out of its range.
 
     goal: the bound on a metric, mean over the episodes, that the search is for. Every episode starts at rest on a
-    random face at a random heading, towards a random direction. An episode without a tip in its first ``patience``
-    seconds ends there.
+    random face at a random heading, towards a random direction; to step is to tip onto a neighbour of that face, drawn
+    at random too, and the direction is the one across their edge. An episode without a tip in its first ``patience``
+    seconds ends there, and one of stepping with the first tip. On a slope the wanted direction is uphill.
     """
 
     motion: str
@@ -27,6 +28,7 @@ class Task:
     settle: float = bounded(0, 60, 0.3, "s", "standing still before it")
     patience: float = bounded(0, 3600, 4.0, "s", "given up without a tip in this time")
     dt: float = bounded(LEAST_TIME_STEP, LARGEST_TIME_STEP, 2e-3, "s", "physics time step")
+    slope: float = bounded(0, 60, 0.0, "deg", "of the ground, uphill along the wanted direction")
     payload: float = bounded(0, 100, 0.0, "kg", "mass of the payload a design must carry; 0 asks for none")
 
     def __post_init__(self) -> None:
@@ -35,6 +37,8 @@ class Task:
 
 MOTIONS: dict[str, dict[str, Any]] = {
     "roll": {"goal": "speed_lps >= 0.2"},
+    "step": {"goal": "arrived >= 0.9", "seconds": 4.0},
+    "climb": {"goal": "speed_lps >= 0.05", "slope": 10.0},
     "carry": {"goal": "speed_lps >= 0.2", "payload": 0.5},
 }
 

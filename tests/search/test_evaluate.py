@@ -8,6 +8,7 @@ import tensegym.search.evaluate as module
 from tensegym.control.cpg import Cpg, CpgController, drive_kinds, fitted_feedback
 from tensegym.design import RobotDesign
 from tensegym.errors import DesignError
+from tensegym.gait import GaitMeter
 from tensegym.robot import TensegrityRobot
 from tensegym.search.evaluate import Trial, evaluate, run_trial, try_all
 from tensegym.symmetry import symmetries
@@ -109,3 +110,28 @@ def test_commands_stay_within_the_deepest_pull():
 def test_bad_generators_are_refused(fields, words):
     with pytest.raises(DesignError, match=words), TensegrityRobot(RobotDesign(), dt=4e-3) as robot:
         CpgController(robot, Cpg(**fields), np.array([1.0, 0.0]))
+
+
+def test_without_friction_a_robot_slides_down_a_slope_as_a_block_does():
+    angle, uphill = math.radians(10), np.array([0.6, 0.8])
+    with TensegrityRobot(RobotDesign(friction=0.0), dt=2e-3) as robot:
+        robot.reset(0)
+        robot.slope(angle, uphill)
+        robot.step(100)
+        meter, first, speed = GaitMeter(robot, uphill), robot.centre_of_mass_in_world(), robot.momentum_in_world()[0]
+        robot.step(250)
+        meter.update()
+        way = (robot.centre_of_mass_in_world() - first)[:2] @ uphill
+    begun = speed[:2] @ uphill / robot.design.mass
+    assert way == pytest.approx(0.5 * begun - 0.5 * 9.81 * math.sin(angle) * 0.5**2, rel=0.01)
+    assert meter.metrics().audit_excess < 1e-3  # what it gains in speed it loses in height
+
+
+def test_a_step_is_judged_by_the_face_it_was_to_reach(tiny):
+    task = tiny(('motion = "roll"', 'motion = "step"'), ("seconds = 0.8", "seconds = 4.0")).task
+    control = {"policy": "", "gain": 2.0}
+    seeds = range(40, 52)
+    reached = [evaluate(RobotDesign(), control, task, seed) for seed in seeds]
+    assert {e["tips"] for e in reached} == {0.0, 1.0}
+    assert all(e["arrived"] <= e["tips"] for e in reached)
+    assert sum(e["arrived"] for e in reached) > 0

@@ -45,7 +45,7 @@ def test_the_shipped_carry_task_begins_at_the_papers_numbers():
         ("elastic_cable.pretension", "elastic_cable.pretention", ["unknown field 'pretention'", "pretension"]),
         ("design.elastic_cable.pretension", "elastic.pretension", ["under design. or controller."]),
         ("controller.lags", "controller.legs", ["unknown field 'legs'", "lags"]),
-        ('motion = "roll"', 'motion = "fly"', ["'fly' is not one of roll, carry"]),
+        ('motion = "roll"', 'motion = "fly"', ["'fly' is not one of roll, step"]),
         ('motion = "roll"', 'motion = "roll"\ngoal = "grace >= 1"', ["no metric measures 'grace'", "speed_lps"]),
         ("seconds = 0.8", "seconds = -1", ["Task.seconds = -1.0 is outside"]),
         ("seconds = 0.8", "second = 0.8", ["unknown field 'second'", "seconds"]),
