@@ -15,6 +15,7 @@ for name, design in ((ROLLING, "six_rod"), (FLEXIBLE_ROLLING, "six_rod_flexible"
         register(
             id=name,
             entry_point="tensegym.envs.rolling:RollingEnv",
+            vector_entry_point="tensegym.envs.vector:RollingVectorEnv",
             kwargs={"design": design},
             max_episode_steps=round(EPISODE_SECONDS / CONTROL_PERIOD),
         )

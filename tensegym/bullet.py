@@ -173,7 +173,7 @@ class World:
             self._pack_angles.pack_into(self.angles.data, 0, *angles)
 
     @property
-    def engine(self) -> tuple[int, int, IntArray, IntArray, IntArray, FloatArray, FloatArray]:
+    def engine(self) -> tuple[int, int, IntArray, np.ndarray, IntArray, FloatArray, FloatArray]:
         """What `substeps.run` works on: client, number of bodies in it, window onto their states, bodies' numbers, rows
         of those with two links, poses, angles. Whoever takes it may step the world."""
         self._stale = True

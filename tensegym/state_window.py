@@ -20,7 +20,7 @@ NONE = np.zeros(3, dtype=np.intp)
 _MEMORY, _REACH = Path("/proc/self/mem"), 1 << 18  # bytes searched after the status
 
 
-def find_window(handle: int, bodies: IntArray) -> IntArray:
+def find_window(handle: int, bodies: np.ndarray) -> IntArray:
     """(3,) address of the client's status, kind of a status that answers with a state, address of the state's pose; all
     0 where that is not sure, or ``handle`` is 0. ``bodies`` (b,) are the client's.
     """

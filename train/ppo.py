@@ -15,7 +15,6 @@ import subprocess
 import sys
 import time
 from dataclasses import dataclass, replace
-from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, cast
@@ -28,9 +27,10 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import configure
 from stable_baselines3.common.utils import set_random_seed
-from stable_baselines3.common.vec_env import SubprocVecEnv, VecMonitor, VecNormalize
+from stable_baselines3.common.vec_env import VecMonitor, VecNormalize
 from tqdm import tqdm
 
+from tensegym.envs import CONTROL_PERIOD
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
 from tensegym.files import replace_file
@@ -38,6 +38,7 @@ from tensegym.report import Report, table
 
 from .config import TrainConfig, load_config
 from .symmetric_policy import SymmetricPolicy, symmetry_arguments
+from .vec_env import RollingVecEnv
 
 CURVE_FIELDS = ("steps", "hours", "episodes", "speed_lps", "speed_lps_p10", "slip_share", "tips", "audit_excess",
                 "action_std")  # fmt: skip
@@ -48,14 +49,21 @@ def make_env(config: TrainConfig) -> gym.Env:
 
     Raises InputError for an environment or an argument there is none of.
     """
-    import tensegym.envs
-
-    period = config.env.get("control_period", tensegym.envs.CONTROL_PERIOD)
     try:
-        steps = max(1, round(config.episode_seconds / period))
-        return gym.make(config.env_id, max_episode_steps=steps, **config.env)
+        return gym.make(config.env_id, max_episode_steps=_episode_steps(config), **config.env)
     except (TypeError, ZeroDivisionError, gym.error.Error) as error:
         raise InputError(f"training config: env_id = {config.env_id!r}, env = {config.env!r}: {error}") from error
+
+
+def _episode_steps(config: TrainConfig) -> int:
+    period = config.env.get("control_period", CONTROL_PERIOD)
+    return max(1, round(config.episode_seconds / period))
+
+
+def make_vec_env(config: TrainConfig) -> RollingVecEnv:
+    """The config's environments, over the cores."""
+    arguments = {**gym.spec(config.env_id).kwargs, **config.env}
+    return RollingVecEnv(config.n_envs, _episode_steps(config), arguments)
 
 
 @dataclass(frozen=True)
@@ -128,7 +136,7 @@ def _versions() -> dict[str, str]:
 def train(config: TrainConfig, seed: int, out: Path, state: dict[str, Any]) -> int:
     """Run the chunks that are left; returns the steps done."""
     torch.set_num_threads(1)
-    workers = SubprocVecEnv([partial(make_env, config) for _ in range(config.n_envs)], start_method="forkserver")
+    workers = make_vec_env(config)
     monitored = VecMonitor(workers)
     try:
         if state["steps"]:

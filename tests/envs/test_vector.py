@@ -1,0 +1,104 @@
+"""Many environments as one: against single ones, whatever the number of processes."""
+
+import os
+import signal
+import time
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium.vector import AutoresetMode
+
+from tensegym.envs.vector import RollingVectorEnv
+from tensegym.errors import DesignError, SimulationError
+
+SHORT = {"control_period": 0.02, "settle": 0.0}
+
+
+def run(env: RollingVectorEnv, steps: int) -> list[np.ndarray]:
+    """Seeded episodes under seeded actions; everything the environment gives but infos."""
+    seen = [env.reset(seed=3)[0]]
+    rng = np.random.default_rng(0)
+    for _ in range(steps):
+        observations, rewards, terminated, truncated, _ = env.step(rng.uniform(-1, 1, env.action_space.shape))
+        seen += [observations, rewards, terminated, truncated]
+    return seen
+
+
+def test_the_number_of_processes_changes_nothing():
+    with_one, with_two = (RollingVectorEnv(3, processes, 4, **SHORT) for processes in (1, 2))
+    try:
+        for one, two in zip(run(with_one, 6), run(with_two, 6), strict=True):
+            np.testing.assert_array_equal(one, two)
+    finally:
+        with_one.close()
+        with_two.close()
+
+
+def test_rows_are_single_environments_that_start_anew_in_the_step_that_ends_them():
+    vector = gym.make_vec("tensegym/SixRodRolling-v0", num_envs=2, processes=1, max_episode_steps=3, **SHORT)
+    single = gym.make("tensegym/SixRodRolling-v0", max_episode_steps=3, **SHORT)
+    assert isinstance(vector, RollingVectorEnv)
+    assert vector.metadata["autoreset_mode"] == AutoresetMode.SAME_STEP
+    observations, _ = vector.reset(seed=5)
+    observation, _ = single.reset(seed=6)  # the second row's seed
+    rng = np.random.default_rng(1)
+    for step in range(1, 5):
+        np.testing.assert_array_equal(observations[1], observation)
+        assert observations in vector.observation_space
+        actions = rng.uniform(-1, 1, (2, 6)).astype(np.float32)
+        observations, rewards, terminated, truncated, infos = vector.step(actions)
+        observation, reward, _, ended, info = single.step(actions[1])
+        assert rewards[1] == reward
+        assert truncated[1] == ended == (step == 3)
+        assert not terminated.any()
+        if ended:
+            np.testing.assert_array_equal(infos["final_obs"][1], observation)
+            assert infos["final_info"]["gait"]["tips"][1] == info["gait"]["tips"]
+            observation, start = single.reset()
+            assert infos["face"][1] == start["face"]
+    vector.close()
+    single.close()
+
+
+def test_the_registered_time_limit_holds():
+    vector = gym.make_vec("tensegym/FlexibleSixRodRolling-v0", num_envs=1, control_period=0.002, settle=0.0)
+    vector.reset(seed=0)
+    ends = [bool(vector.step(np.zeros((1, 6)))[3][0]) for _ in range(101)]
+    assert np.flatnonzero(ends).tolist() == [49, 99]
+    vector.close()
+
+
+def test_bad_input_is_an_error_here_and_leaves_the_processes_at_work():
+    vector = RollingVectorEnv(2, 2, **SHORT)
+    with pytest.raises(DesignError, match="colour"):
+        vector.reset(options={"colour": 1})
+    assert vector.reset(seed=0)[0].shape == vector.observation_space.shape
+    vector.close()
+    for arguments in ({"num_envs": 0}, {"processes": 0}, {"num_envs": 2, "processes": 2, "observation": "none"},
+                      {"render_mode": "human"}):  # fmt: skip
+        with pytest.raises(DesignError):
+            RollingVectorEnv(**arguments)
+
+
+def test_a_dead_process_is_an_error_and_none_is_left():
+    vector = RollingVectorEnv(2, 2, **SHORT)
+    vector.reset(seed=0)
+    workers = vector.batch._workers
+    os.kill(workers[0].pid, signal.SIGKILL)
+    workers[0].join()
+    with pytest.raises(SimulationError, match="died"):
+        for _ in range(2):
+            vector.step(np.zeros((2, 6)))
+            time.sleep(0.1)
+    vector.close()
+    assert not any(worker.is_alive() for worker in workers)
+
+
+def test_every_robot_has_its_picture():
+    vector = RollingVectorEnv(2, 1, render_mode="rgb_array", **SHORT)
+    vector.reset(seed=0)
+    pictures = vector.render()
+    assert [picture.shape for picture in pictures] == [(360, 480, 3)] * 2
+    assert (pictures[0] != pictures[1]).any()
+    vector.close()
