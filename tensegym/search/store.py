@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import optuna
+import sqlalchemy
 from optuna.trial import TrialState, create_trial
 from sqlalchemy.exc import SQLAlchemyError
 
@@ -35,6 +36,9 @@ class Store:
         optuna.logging.set_verbosity(optuna.logging.ERROR)
         try:
             storage = optuna.storages.RDBStorage(url)
+            if url.startswith("sqlite:"):
+                sqlalchemy.event.listen(storage.engine, "connect", _write_ahead)
+                storage.engine.dispose()  # connections made from now on
             if problem is None:
                 self._study = optuna.load_study(study_name=name, storage=storage)
             else:
@@ -95,3 +99,9 @@ class Store:
             outcome = Outcome(**trial.user_attrs["outcome"])
             found[outcome.number] = (dict(trial.params), outcome)
         return found
+
+
+def _write_ahead(connection: Any, _: Any) -> None:
+    """SQLite's log in place of its journal: fewer waits for the disk, and as safe against a killed process."""
+    connection.execute("PRAGMA journal_mode=WAL")
+    connection.execute("PRAGMA synchronous=NORMAL")
