@@ -1,0 +1,94 @@
+"""How a search scales over workers: trials that only sleep, so what is left is the scheduler, storage and sampler.
+
+    python benchmarks/design_scaling.py --seconds 1 --workers 1 4 16 64
+
+Sleeping trials run as threads of one joblib pool: they need no core, so one machine stands for a cluster of any size.
+Prints, for each number of workers, trials a second against the ideal, and what asking, storing and telling cost.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import joblib
+import tyro
+
+from tensegym.report import table
+from tensegym.search.asker import Asker
+from tensegym.search.engine import JoblibEngine
+from tensegym.search.evaluate import Outcome, Trial
+from tensegym.search.loop import run_search
+from tensegym.search.problem import load_problem
+from tensegym.search.store import Store
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """Throughput of a search with an artificial evaluation time."""
+
+    seconds: float = 1.0
+    """Of one trial [s]."""
+    workers: tuple[int, ...] = (1, 4, 16, 64)
+    """Numbers of workers."""
+    generations: int = 3
+    """Batches a run, each of 64 trials, or of as many as there are workers if those are more."""
+    task: str = "carry"
+    """Task file, for its space and sampler."""
+
+    def run(self) -> str:
+        rows = []
+        for workers in self.workers:
+            problem = load_problem(self.task).with_settings(batch=max(64, workers))
+            budget = 1 + (self.generations if workers >= 16 else 1) * problem.settings.batch
+            with tempfile.TemporaryDirectory() as folder, joblib.parallel_config(backend="threading"):
+                store = Timed(Path(folder), problem)
+                begun = time.perf_counter()
+                run_search(problem, store, JoblibEngine(workers), 1, evaluate=self._sleep)
+                start = time.perf_counter() - begun
+                begun = time.perf_counter()
+                run_search(problem, store, JoblibEngine(workers), budget, evaluate=self._sleep)
+                wall = time.perf_counter() - begun
+                added = store.spent / budget
+            asked = _ask_and_tell(self.task, problem.settings.batch)
+            rate, ideal = (budget - 1) / wall, workers / self.seconds
+            rows.append([workers, budget - 1, rate, ideal, rate / ideal, 1e3 * added, 1e3 * asked, start])
+        header = ["workers", "trials", "trials/s", "ideal", "efficiency", "store ms/trial", "ask and tell ms/trial",
+                  "one trial alone s"]  # fmt: skip
+        return table(header, rows)
+
+    def _sleep(self, trial: Trial) -> Outcome:
+        time.sleep(self.seconds)
+        return _told(trial.number)
+
+
+class Timed(Store):
+    """A store that adds up the time its writes take."""
+
+    spent = 0.0
+
+    def add(self, *args: object) -> None:
+        begun = time.perf_counter()
+        super().add(*args)  # type: ignore[arg-type]
+        self.spent += time.perf_counter() - begun
+
+
+def _told(number: int) -> Outcome:
+    return Outcome(number, {"speed_lps": (number * 0.618) % 1, "slip_share": 0.1, "sound": 1.0}, 1)
+
+
+def _ask_and_tell(task: str, batch: int) -> float:
+    """Mean time that the sampler takes for a trial of its second and third batch [s]."""
+    asker = Asker(load_problem(task).with_settings(batch=batch))
+    for repeat in range(4):
+        if repeat == 2:
+            begun = time.perf_counter()
+        asked = asker.ask()
+        asker.tell([_told(i) for i in range(len(asked))])
+    return (time.perf_counter() - begun) / (2 * batch)
+
+
+if __name__ == "__main__":
+    print(tyro.cli(Scaling).run())
