@@ -24,8 +24,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "train": ("tensegym.train.ppo:Train", "train a rolling policy with PPO; resumable"),
     "evaluate": ("tensegym.train.evaluate:Evaluate", "judge a policy and the baselines over many seeds"),
     "design": ("tensegym.commands.design:COMMANDS", "search for a design that makes a motion: run, resume, status"),
+    "bench": ("tensegym.commands.bench:Bench", "measured ratios: substep, environment, start-up, beside their peers"),
     "flexure": ("tensegym.flexure.commands:COMMANDS", "flexible joints: table, curves, fit, track, solve"),
 }
+EXTRAS = {"optuna": "search", "joblib": "search", "cmaes": "search", "sqlalchemy": "search", "ray": "cluster"}
 
 
 def usage(commands: dict[str, tuple[str, str]], program: str) -> str:
@@ -68,8 +70,8 @@ def run(argv: list[str], commands: dict[str, tuple[str, str]] = COMMANDS, progra
     except ModuleNotFoundError as error:
         if str(error.name).startswith("tensegym"):
             raise
-        needed = "install tensegym[train,search]"
-        print(f"{program} {name}: error: {error.name} is not installed; {needed}", file=sys.stderr)
+        extra = EXTRAS.get(str(error.name), "train")
+        print(f"{program} {name}: error: {error.name} is not installed; install tensegym[{extra}]", file=sys.stderr)
         return 2
     except BrokenPipeError:
         raise

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import sys
-import time
 from dataclasses import dataclass
 from datetime import timedelta
 from pathlib import Path
@@ -48,7 +47,6 @@ class _Search:
 
         store.note("budget", budget)
         done = store.finished()
-        begun, spent = time.time(), float(store.noted("seconds") or 0.0)
         with (
             engine(self.engine, self.jobs, self.address) as pool,
             tqdm(total=budget, initial=len(done), unit="trial", file=sys.stderr, smoothing=0.05) as bar,
@@ -62,10 +60,7 @@ class _Search:
                     bar.set_postfix_str(f"{problem.settings.objectives[0]}: {abs(best):.4g}", refresh=False)
                 bar.update()
 
-            try:
-                run_search(problem, store, pool, budget, progress)
-            finally:
-                store.note("seconds", spent + time.time() - begun)
+            run_search(problem, store, pool, budget, progress)
         return _status(problem, store, out)
 
 

@@ -75,10 +75,8 @@ class Asker:
     def _sampler(self, seed: int) -> optuna.samplers.BaseSampler:
         samplers = optuna.samplers
         if self.settings.sampler == "cmaes":
-            start = {k: v for k, v in self.problem.space.start.items()
-                     if isinstance(self.distributions[k], FloatDistribution)}  # fmt: skip
-            return samplers.CmaEsSampler(
-                x0=start, sigma0=self.settings.sigma, popsize=self.settings.batch, seed=seed,
+            return samplers.CmaEsSampler(  # begins in the middle of the ranges, where random search is on average
+                sigma0=self.settings.sigma, popsize=self.settings.batch, seed=seed,
                 warn_independent_sampling=False, independent_sampler=samplers.RandomSampler(seed=seed),
             )  # fmt: skip
         if self.settings.sampler == "nsga2":

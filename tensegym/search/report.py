@@ -103,7 +103,7 @@ def write_report(
     columns = {f"{who}, {1e3 * dt:g} ms": summary(rows) for (who, dt), rows in confirmed.rows.items()}
     met = problem.task.goal.violation({k: float(np.mean([r[k] for r in found])) for k in found[0]}) <= 0
     data = {"folder": str(folder), "goal": str(problem.task.goal), "goal_met": met, "trial": confirmed.number,
-            "trials": len(finished), "seconds": store.noted("seconds"), "confirmed": columns, "importance": shares,
+            "trials": len(finished), "seconds": store.seconds(), "confirmed": columns, "importance": shares,
             "best_so_far": {name: _last_best(c, objectives[0].maximise) for name, c in curves.items()}}  # fmt: skip
     (folder / "report.md").write_text("\n".join(_lines(problem, store, values, data, pictures)) + "\n")
     return data
@@ -121,7 +121,7 @@ def _lines(problem: Problem, store: Store, values: dict[str, Any], data: dict[st
     yield ""
     yield (f"Goal: mean {problem.task.goal} over {next(iter(columns.values()))['episodes']} new starts. "
            f"**{'Met' if data['goal_met'] else 'Not met'}** by trial {data['trial']} of {data['trials']}; "
-           f"{settings.sampler}, seed {settings.seed}, {(data['seconds'] or 0) / 60:.0f} minutes.")  # fmt: skip
+           f"{settings.sampler}, seed {settings.seed}, {data['seconds'] / 60:.0f} minutes.")  # fmt: skip
     yield ""
     yield from _table(["", *columns], [[what, *(c[key] for c in columns.values())] for key, what in _ROWS.items()])
     yield ""

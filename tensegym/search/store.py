@@ -9,6 +9,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import optuna
 import sqlalchemy
 from optuna.trial import TrialState, create_trial
@@ -91,6 +92,12 @@ class Store:
             return {"trials_a_minute": None, "seconds_left": None}
         rate = (len(recent) - 1) / span
         return {"trials_a_minute": 60 * rate, "seconds_left": max(0, budget - len(ends)) / rate}
+
+    def seconds(self) -> float:
+        """Wall time of the search [s]: between its trials' ends, less any break of over ten minutes."""
+        times = [t.datetime_complete.timestamp() for t in self._study.get_trials(deepcopy=False) if t.datetime_complete]
+        gaps = np.diff(sorted(times))
+        return float(gaps[gaps < 600].sum())
 
     def finished(self) -> Finished:
         """Every trial that is done, by number."""

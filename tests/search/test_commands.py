@@ -86,3 +86,10 @@ def test_bad_input(cli, tmp_path, monkeypatch, argv, words):
     monkeypatch.chdir(tmp_path)
     assert_refused(cli("design", *argv), *words)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_missing_library_is_named_with_the_extra_that_brings_it(cli, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, "ray", None)
+    assert_refused(cli("design", "run", "--engine", "ray"), "ray is not installed", "tensegym[cluster]")
+    assert not list(tmp_path.iterdir())
