@@ -67,3 +67,10 @@ def test_bad_task_files_are_refused(tiny, old, new, words):
 def test_a_space_is_needed():
     with pytest.raises(InputError, match="is empty; give at least one field"):
         problem_from('task = "roll"', "nothing")
+
+
+@pytest.mark.parametrize("name", ["carry", "climb", "roll", "step"])
+def test_shipped_task_files_are_sound(name):
+    problem = load_problem(name)
+    assert problem.task.motion == name
+    assert set(problem.space.start) == {d.name for d in problem.space.dimensions}
