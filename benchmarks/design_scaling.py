@@ -1,6 +1,7 @@
 """How a search scales over workers: trials that only sleep, so what is left is the scheduler, storage and sampler.
 
     python benchmarks/design_scaling.py --seconds 1 --workers 1 4 16 64
+    python benchmarks/design_scaling.py --real --workers 1 2      # evaluations of the task, in processes
 
 Sleeping trials run as threads of one joblib pool: they need no core, so one machine stands for a cluster of any size.
 Prints, for each number of workers, trials a second against the ideal, and what asking, storing and telling cost.
@@ -19,7 +20,7 @@ import tyro
 from tensegym.report import table
 from tensegym.search.asker import Asker
 from tensegym.search.engine import JoblibEngine
-from tensegym.search.evaluate import Outcome, Trial
+from tensegym.search.evaluate import Outcome, Trial, run_trial
 from tensegym.search.loop import run_search
 from tensegym.search.problem import load_problem
 from tensegym.search.store import Store
@@ -38,7 +39,12 @@ class Scaling:
     task: str = "carry"
     """Task file, for its space and sampler."""
 
+    real: bool = False
+    """Instead: evaluate the task's start, one trial a second or so of a core, in processes."""
+
     def run(self) -> str:
+        if self.real:
+            return self._run_real()
         rows = []
         for workers in self.workers:
             problem = load_problem(self.task).with_settings(batch=max(64, workers))
@@ -58,6 +64,21 @@ class Scaling:
         header = ["workers", "trials", "trials/s", "ideal", "efficiency", "store ms/trial", "ask and tell ms/trial",
                   "one trial alone s"]  # fmt: skip
         return table(header, rows)
+
+    def _run_real(self) -> str:
+        problem = load_problem(self.task)
+        tables = problem.space.apply(problem.space.start)
+        trials = [Trial(i, tables["design"], tables["controller"], problem.task, (i, i + 1)) for i in range(40)]
+        rows, first = [], 0.0
+        for workers in self.workers:
+            with JoblibEngine(workers) as engine:
+                list(engine.map(run_trial, trials[: 2 * workers]))  # imports, kernels, the policy
+                begun = time.perf_counter()
+                list(engine.map(run_trial, trials))
+                rate = len(trials) / (time.perf_counter() - begun)
+            first = first or rate
+            rows.append([workers, rate, rate / first])
+        return table(["workers", "trials/s", "over the first"], rows)
 
     def _sleep(self, trial: Trial) -> Outcome:
         time.sleep(self.seconds)

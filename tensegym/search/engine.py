@@ -39,7 +39,7 @@ class JoblibEngine:
         from joblib.externals.loky.process_executor import TerminatedWorkerError
 
         left = list(items)
-        for _ in range(RETRIES):
+        for _ in range(1 + RETRIES):
             done: set[int] = set()
             try:
                 with warnings.catch_warnings():
@@ -51,7 +51,7 @@ class JoblibEngine:
                 return
             except TerminatedWorkerError:
                 left = [item for item in left if item.number not in done]
-        raise SimulationError(f"trial {left[0].number}: its worker died {RETRIES} times")
+        raise SimulationError(f"trial {left[0].number}: its worker died {1 + RETRIES} times")
 
 
 class RayEngine:
