@@ -1,0 +1,57 @@
+"""Searches side by side: the best so far by sampler over seeds, or the hypervolume where there are several objectives.
+
+    python benchmarks/design_compare.py --folders runs/carry-cmaes-* runs/carry-random-*
+
+Compares at the number of trials that all have. Refused, stopped and out-of-constraint trials count as trials but never
+as the best. Hypervolumes are of objectives scaled so that the worst and best of all searches are 1 and 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import tyro
+from optuna._hypervolume import compute_hypervolume
+
+from tensegym.commands.design import open_search
+from tensegym.report import table
+from tensegym.search.winner import losses_of, pareto
+
+
+@dataclass(frozen=True)
+class Compare:
+    """Median and spread over seeds, sampler by sampler."""
+
+    folders: tuple[Path, ...]
+    """Folders of searches of one task with different samplers and seeds."""
+    trials: int | None = None
+    """Trials to compare at; default: as many as all have."""
+
+    def run(self) -> str:
+        searches = []
+        for folder in self.folders:
+            problem, store = open_search(folder)
+            searches.append((problem, store.finished()))
+        budget = self.trials or min(len(finished) for _, finished in searches)
+        losses = [losses_of(p, {n: t for n, t in f.items() if n < budget})[1] for p, f in searches]
+        everything = np.concatenate(losses)
+        low, high = everything.min(axis=0), everything.max(axis=0)
+        objectives = searches[0][0].settings.objectives
+        several = len(objectives) > 1
+        by_sampler: dict[str, list[float]] = {}
+        for (problem, _), rows in zip(searches, losses, strict=True):
+            if several:
+                scaled = (rows - low) / np.maximum(high - low, 1e-12)
+                score = float(compute_hypervolume(scaled[pareto(scaled)], np.ones(len(objectives))))
+            else:
+                score = float(rows.min()) * (-1 if objectives[0].maximise else 1)
+            by_sampler.setdefault(problem.settings.sampler, []).append(score)
+        what = "hypervolume" if several else str(objectives[0])
+        lines = [[name, len(v), budget, float(np.median(v)), min(v), max(v)] for name, v in by_sampler.items()]
+        return table(["sampler", "seeds", "trials", f"{what}, median", "least", "most"], lines)
+
+
+if __name__ == "__main__":
+    print(tyro.cli(Compare).run())
