@@ -4,7 +4,8 @@
     python benchmarks/design_scaling.py --real --workers 1 2      # evaluations of the task, in processes
 
 Sleeping trials run as threads of one joblib pool: they need no core, so one machine stands for a cluster of any size.
-Prints, for each number of workers, trials a second against the ideal, and the processor time that storing, and asking and telling, take a trial.
+Prints, for each number of workers, trials a second against the ideal, and the processor time that storing a trial, and
+asking and telling, take.
 """
 
 from __future__ import annotations
