@@ -40,7 +40,7 @@ class _Search:
     def _check(self) -> None:
         if self.jobs < 1:
             raise InputError(f"jobs = {self.jobs} must be 1 or more")
-        check_engine(self.engine)
+        check_engine(self.engine, self.address)
 
     def _go(self, problem: Problem, store: Store, budget: int, out: Path) -> Report:
         from tqdm import tqdm

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import importlib
+import re
+import socket
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
@@ -81,14 +83,24 @@ class RayEngine:
             yield from self._ray.get(ready)
 
 
-def check_engine(name: str) -> None:
-    """Raises InputError for an engine there is not, ModuleNotFoundError where its library is missing."""
+def check_engine(name: str, address: str | None = None) -> None:
+    """Raises InputError for an engine there is not, or an address of host and port at which nothing listens.
+
+    Raises ModuleNotFoundError where the engine's library is missing. Ray itself takes minutes to give an address up.
+    """
     if name not in ("joblib", "ray"):
         raise InputError(f"engine = {name!r} is not one of joblib, ray")
     importlib.import_module(name)
+    place = re.fullmatch(r"(?:ray://)?([^:/]+):(\d{1,5})", address or "")
+    if not place:
+        return
+    try:
+        socket.create_connection((place[1], int(place[2])), timeout=5).close()
+    except OSError as error:
+        raise InputError(f"no Ray cluster answers at address = {address!r}: {error}") from error
 
 
 def engine(name: str, jobs: int, address: str | None = None) -> Engine:
     """By name: joblib or ray. Raises as `check_engine`, or InputError where no cluster answers."""
-    check_engine(name)
+    check_engine(name, address)
     return RayEngine(jobs, address) if name == "ray" else JoblibEngine(jobs)
