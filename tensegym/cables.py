@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from . import cable_forces as kernel
+from . import cable_forces as law
 from . import rotation
 from .design import RobotDesign
+from .geometry import cable_geometry, flexure_geometry
+from .mobility import mobility_matrix
 from .pins import PinArrays
 from .structure import FloatArray, IntArray
 
@@ -176,8 +178,8 @@ def explicit_step_limit(arrays: CableArrays) -> float:
     if not count:
         return np.inf
     mobility = mobility_at_rest(arrays)
-    stiff = np.sqrt(arrays.params[:, kernel.STIFFNESS])
-    damp = np.sqrt(arrays.params[:, kernel.DAMPING])
+    stiff = np.sqrt(arrays.params[:, law.STIFFNESS])
+    damp = np.sqrt(arrays.params[:, law.DAMPING])
     k = np.linalg.eigvalsh(stiff[:, None] * mobility * stiff)[-1]
     c = np.linalg.eigvalsh(damp[:, None] * mobility * damp)[-1]
     return float((-2 * c + np.sqrt(4 * c * c + 4 * k)) / k)
@@ -188,10 +190,10 @@ def mobility_at_rest(arrays: CableArrays) -> FloatArray:
     count, flexures = len(arrays.ends), arrays.first_flexure
     turns, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
     poses, pins = arrays.rest_poses, arrays.pins
-    kernel.cable_geometry(poses, arrays.ends[:flexures], arrays.params, turns, directions, lengths)
+    cable_geometry(poses, arrays.ends[:flexures], arrays.params, turns, directions, lengths)
     angles = np.zeros(len(pins.bodies))
-    kernel.flexure_geometry(poses, pins.bodies, pins.params, angles, flexures, turns, directions, lengths)
+    flexure_geometry(poses, pins.bodies, pins.params, angles, flexures, turns, directions, lengths)
     mobility = np.empty((count, count))
-    kernel.mobility_matrix(poses, arrays.ends, arrays.bodies, pins.partner, pins.bodies, pins.params, turns, directions,
+    mobility_matrix(poses, arrays.ends, arrays.bodies, pins.partner, pins.bodies, pins.params, turns, directions,
                            mobility)  # fmt: skip
     return mobility

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from . import cable_forces as kernel
+from .geometry import points_in_world
 from .robot import TensegrityRobot
 from .structure import FloatArray
 
@@ -28,7 +28,7 @@ def cable_ends_in_world(robot: TensegrityRobot) -> FloatArray:
     count = len(robot.lengths)
     ends, points = robot.cables.ends[:count].ravel(), robot.cables.params[:count, :6].reshape(-1, 3)
     out = np.empty((2 * count, 3))
-    kernel.points_in_world(robot.poses_in_world, ends, points, out)
+    points_in_world(robot.poses_in_world, ends, points, out)
     return out.reshape(count, 2, 3)
 
 

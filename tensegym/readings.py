@@ -8,7 +8,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from .cable_forces import STIFFNESS, TWO_WAY, cable_geometry, points_in_world, rotation_matrix
+from .cable_forces import STIFFNESS, TWO_WAY
+from .geometry import cable_geometry, points_in_world, rotation_matrix
 from .rotation import angular_velocity
 
 

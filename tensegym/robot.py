@@ -13,13 +13,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
-from . import cable_forces as kernel
 from . import drives as drive_kernel
+from . import kernel
 from .bullet import World, packaged_urdf
+from .cable_forces import STIFFNESS, start
 from .cables import CableArrays, cable_arrays, explicit_step_limit
 from .design import RobotDesign
 from .errors import DesignError, SimulationError
 from .faces import Faces, hull_faces, resting_rotation
+from .geometry import points_in_world
 from .pins import AXIS, second_poses
 from .readings import mechanical_energy, nodes_in_world, velocities_between
 from .rotation import step_back
@@ -178,7 +180,7 @@ class TensegrityRobot:
         poses[:, :3] = rotation.apply(poses[:, :3] - centre)
         poses[:, 3:] = (rotation * Rotation.from_quat(poses[:, 3:])).as_quat()
         feet = np.empty_like(self._foot_positions)
-        kernel.points_in_world(poses, cables.feet, cables.foot_points, feet)
+        points_in_world(poses, cables.feet, cables.foot_points, feet)
         poses[:, 2] -= (feet[:, 2] - cables.foot_radii).min()
 
         moving = np.zeros((len(poses), 6)) if velocities is None else velocities
@@ -196,8 +198,8 @@ class TensegrityRobot:
         self._last_poses[:] = poses
         if velocities is not None:
             step_back(self._last_poses, velocities, self.dt)
-        kernel.points_in_world(poses, cables.feet, cables.foot_points, self._foot_positions)
-        kernel.start(poses, self.world.angles, cables.ends, cables.params, pins.bodies, pins.params, self._springs)
+        points_in_world(poses, cables.feet, cables.foot_points, self._foot_positions)
+        start(poses, self.world.angles, cables.ends, cables.params, pins.bodies, pins.params, self._springs)
         self._springs[0, cables.first_flexure :] -= self.dt * pin_rates  # the rates are those over the last step
 
     def push(self, velocity: ArrayLike) -> None:
@@ -263,7 +265,7 @@ class TensegrityRobot:
     def node_positions_in_world(self) -> FloatArray:
         """(n, 3) [m], now."""
         out = np.empty_like(self._foot_positions)
-        kernel.points_in_world(self.poses_in_world, self.cables.feet, self.cables.foot_points, out)
+        points_in_world(self.poses_in_world, self.cables.feet, self.cables.foot_points, out)
         return out
 
     def nodes_in_world(self, velocities: FloatArray | None = None) -> tuple[FloatArray, FloatArray]:
@@ -311,7 +313,7 @@ class TensegrityRobot:
         """Energy stored in the flexures of split rods [J], now."""
         if not len(self.flexure_moments):
             return 0.0
-        stiffness = self.cables.params[self.cables.first_flexure :, kernel.STIFFNESS]
+        stiffness = self.cables.params[self.cables.first_flexure :, STIFFNESS]
         return float(0.5 * stiffness @ self.flexure_angles**2)
 
     def account(self) -> Account:

@@ -11,9 +11,10 @@ import numpy as np
 from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
 
-from . import cable_forces as kernel
+from .cable_forces import explicit_tensions, wrenches_of
 from .cables import CableArrays, cable_arrays
 from .design import RobotDesign
+from .geometry import cable_geometry, flexure_geometry, points_in_world
 from .modes import Modes
 from .pins import add_generalised, pinned_inertia, second_poses
 from .structure import FloatArray
@@ -84,12 +85,12 @@ def _forces_and_nodes(arrays: CableArrays, first: np.ndarray, q: FloatArray) -> 
     second_poses(pins.bodies, pins.params, angles, poses)
     turns, directions = np.empty((len(arrays.ends), 2, 3)), np.empty((len(arrays.ends), 3))
     lengths, tensions = np.empty(len(arrays.ends)), np.empty(len(arrays.ends))
-    kernel.cable_geometry(poses, arrays.ends[:flexures], arrays.params, turns, directions, lengths)
-    kernel.flexure_geometry(poses, pins.bodies, pins.params, angles, flexures, turns, directions, lengths)
-    kernel.explicit_tensions(arrays.params, lengths, np.zeros_like(lengths), arrays.natural, tensions)
+    cable_geometry(poses, arrays.ends[:flexures], arrays.params, turns, directions, lengths)
+    flexure_geometry(poses, pins.bodies, pins.params, angles, flexures, turns, directions, lengths)
+    explicit_tensions(arrays.params, lengths, np.zeros_like(lengths), arrays.natural, tensions)
     tensions[arrays.first_driven : arrays.first_driven + arrays.driven] = 0.0
     wrenches = np.zeros((len(poses), 6))
-    kernel.wrenches_of(arrays.ends, turns, directions, tensions, wrenches)
+    wrenches_of(arrays.ends, turns, directions, tensions, wrenches)
     forces = np.zeros(len(q))
     for body, column in enumerate(first[:-1]):
         if pins.partner[body] < 0:
@@ -100,5 +101,5 @@ def _forces_and_nodes(arrays: CableArrays, first: np.ndarray, q: FloatArray) -> 
         add_generalised(geometry, False, wrenches[one, :3], wrenches[one, 3:], own)
         add_generalised(geometry, True, wrenches[two, :3], wrenches[two, 3:], own)
     nodes = np.empty((len(arrays.feet), 3))
-    kernel.points_in_world(poses, arrays.feet, arrays.foot_points, nodes)
+    points_in_world(poses, arrays.feet, arrays.foot_points, nodes)
     return forces, nodes

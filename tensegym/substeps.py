@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from numba import njit
 
-from .cable_forces import substep
 from .direct_calls import client_handle, push_and_step, read_states
+from .kernel import substep
 
 
 @njit(cache=True)

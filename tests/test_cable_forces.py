@@ -7,6 +7,7 @@ from tensegym import cable_forces as kernel
 from tensegym.cables import cable_arrays, explicit_step_limit, mobility_at_rest
 from tensegym.design import ElasticCable, RobotDesign, paper_design
 from tensegym.errors import DesignError
+from tensegym.geometry import cable_geometry
 from tensegym.robot import TensegrityRobot
 
 finite = st.floats(-3, 3)
@@ -33,7 +34,7 @@ def test_implicit_tensions_solve_the_complementarity_problem():
     rng = np.random.default_rng(0)
     count, dt = len(arrays.ends), 2e-3
     turns, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
-    kernel.cable_geometry(arrays.rest_poses, arrays.ends, arrays.params, turns, directions, lengths)
+    cable_geometry(arrays.rest_poses, arrays.ends, arrays.params, turns, directions, lengths)
     pins = arrays.pins
     natural = arrays.natural + rng.normal(0, 0.02, count)
     rates = rng.normal(0, 0.3, count)
@@ -63,7 +64,7 @@ def test_mobility_is_the_effect_of_tensions_on_length_rates():
 
     def lengths_at(changed):
         turns, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
-        kernel.cable_geometry(changed, arrays.ends, arrays.params, turns, directions, lengths)
+        cable_geometry(changed, arrays.ends, arrays.params, turns, directions, lengths)
         return turns, directions, lengths
 
     turns, directions, lengths = lengths_at(poses)
