@@ -1,6 +1,7 @@
 """The steepest incline that a design climbs, from a search's folder: its start and its winner, slope by slope.
 
-    python benchmarks/inclines.py --folder runs/climb --slopes 0 4 8 12 16
+    tensegym design run --task climb --budget 301 --jobs 2 --out runs/climb
+    python benchmarks/inclines.py --folder runs/climb
 
 Prints the mean uphill speed [L/s] and its standard error over fresh starts, at the environments' time step. Reached
 is a slope with a mean of 0.05 L/s or more.
@@ -16,16 +17,16 @@ import tyro
 
 from tensegym.commands.design import open_search
 from tensegym.report import table
-from tensegym.search.confirm import FIRST_SEED, TIME_STEP
+from tensegym.search.confirm import FIRST_SEED, TIME_STEP, pick
+from tensegym.search.engine import JoblibEngine
 from tensegym.search.evaluate import Trial, try_all
-from tensegym.search.winner import best_number
 
 REACHED = 0.05  # L/s
 
 
 @dataclass(frozen=True)
 class Inclines:
-    """Uphill speed over slopes of a search's start and of its best trial."""
+    """Uphill speed over slopes of a search's start and of its best trial on new starts."""
 
     folder: Path
     """Folder of the search."""
@@ -37,9 +38,7 @@ class Inclines:
     def run(self) -> str:
         problem, store = open_search(self.folder)
         finished = store.finished()
-        best = best_number(problem, finished)
-        if best is None:
-            raise SystemExit(f"{self.folder} has no finished trial")
+        best = pick(problem, finished, JoblibEngine(1), 2 * self.episodes, candidates=10, skip=self.episodes)
         rows = []
         seeds = tuple(FIRST_SEED + i for i in range(self.episodes))
         for who, values in (("start", problem.space.start), (f"trial {best}", finished[best][0])):

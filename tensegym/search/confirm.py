@@ -29,18 +29,25 @@ class Confirmed:
 
 
 def confirm(problem: Problem, finished: Finished, engine: Engine, episodes: int, candidates: int = 5) -> Confirmed:
-    """Pick the winner among the best ``candidates`` over a few new starts, then try it and the start over ``episodes``.
+    """Pick the winner, then try it and the start over ``episodes`` others.
 
     Every episode is tried as long as the task says, however hopeless.
     """
+    winner = pick(problem, finished, engine, max(2, episodes // 2), candidates, skip=episodes)
+    both = {"start": problem.space.start, "found": finished[winner][0]}
+    wanted = {(who, dt): problem.space.apply(v) for who, v in both.items() for dt in (TIME_STEP, TIME_STEP / 2)}
+    return Confirmed(winner, _try(problem, wanted, episodes, 0, engine))
+
+
+def pick(
+    problem: Problem, finished: Finished, engine: Engine, episodes: int, candidates: int = 5, skip: int = 0
+) -> int:
+    """Number of the trial with the best mean over new starts, among the best ``candidates`` as searched."""
     tables = {n: problem.space.apply(finished[n][0]) for n in ranked(problem, finished)[:candidates]}
     sign = 1 if problem.settings.objectives[0].maximise else -1
     metric = problem.settings.objectives[0].metric
-    first = _try(problem, {(n, TIME_STEP): t for n, t in tables.items()}, max(2, episodes // 2), episodes, engine)
-    winner = max(tables, key=lambda n: sign * float(np.mean([row[metric] for row in first[n, TIME_STEP]])))
-    both = {"start": problem.space.apply(problem.space.start), "found": tables[winner]}
-    wanted = {(who, dt): t for who, t in both.items() for dt in (TIME_STEP, TIME_STEP / 2)}
-    return Confirmed(winner, _try(problem, wanted, episodes, 0, engine))
+    rows = _try(problem, {(n, TIME_STEP): t for n, t in tables.items()}, episodes, skip, engine)
+    return max(tables, key=lambda n: sign * float(np.mean([row[metric] for row in rows[n, TIME_STEP]])))
 
 
 def _try(
