@@ -13,7 +13,7 @@ help:
 	@echo "make test   all tests"
 	@echo "make lint   ruff and mypy"
 	@echo "make train  train the rolling policy from scratch: runs/rolling-s0"
-	@echo "make bench  measured ratios: the substep against the bare engine, flexure models against their FEM"
+	@echo "make bench  measured ratios: substep, environment, start-up beside their peers, flexure models against their FEM"
 
 setup: $(STAMP)
 
@@ -40,7 +40,7 @@ train: $(STAMP)
 	$(BIN)/tensegym train --config rolling --seed 0
 
 bench: $(STAMP)
-	$(BIN)/python benchmarks/substep.py
+	$(BIN)/tensegym bench --out benchmarks/results/ratios.json
 	$(BIN)/python benchmarks/flexure.py
 
 clean:

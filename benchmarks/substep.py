@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pybullet
 from numba import njit
-from timing import Row, in_turn, row
+from timing import OneCore, Row, in_turn, row
 
 from tensegym.cable_forces import DAMPING, LOCAL_A, LOCAL_B, STIFFNESS
 from tensegym.design import Payload, RobotDesign
@@ -132,20 +132,23 @@ CASES = (("1 ms explicit", RobotDesign(), 1e-3), ("2 ms implicit", RobotDesign()
 
 
 def rows(rounds: int) -> Iterator[Row]:
-    """Ratios of the substep, case by case."""
-    unit = "us a substep"
-    for name, design, dt in CASES:
-        rolling = Rolling(design, dt)
-        contestants = {"substep": rolling.substep, "python": rolling.python_loop, "bare": rolling.bare_step,
-                       "naive": rolling.naive}  # fmt: skip
-        if dt == 1e-3:
-            contestants["MuJoCo"] = twin_block(rolling, design, dt)
-        try:
-            seen = in_turn(contestants, rounds)
-        finally:
-            rolling.close()
-        yield row(f"substep, {name} / bare stepSimulation", seen["substep"], seen["bare"], unit, 2.2)
+    """Ratios of the substep on one core, case by case; the naive loop and the twin are of 1 ms."""
+    with OneCore():
+        for name, design, dt in CASES:
+            yield from _case(name, design, dt, rounds)
+
+
+def _case(name: str, design: RobotDesign, dt: float, rounds: int) -> Iterator[Row]:
+    unit, rolling = "us", Rolling(design, dt)
+    contestants = {"substep": rolling.substep, "python": rolling.python_loop, "bare": rolling.bare_step}
+    if dt == 1e-3:
+        contestants |= {"naive": rolling.naive, "MuJoCo": twin_block(rolling, design, dt)}
+    try:
+        seen = in_turn(contestants, rounds)
+    finally:
+        rolling.close()
+    yield row(f"substep, {name} / bare stepSimulation", seen["substep"], seen["bare"], unit, 2.2)
+    yield row(f"Python calls around the kernel / substep, {name}", seen["python"], seen["substep"], unit)
+    if dt == 1e-3:
         yield row(f"naive Python loop / substep, {name}", seen["naive"], seen["substep"], unit, 10, at_least=True)
-        yield row(f"Python calls, one kernel / substep, {name}", seen["python"], seen["substep"], unit)
-        if "MuJoCo" in seen:
-            yield row(f"substep, {name} / MuJoCo Euler step of the twin", seen["substep"], seen["MuJoCo"], unit, 1.4)
+        yield row(f"substep, {name} / MuJoCo Euler step of the twin", seen["substep"], seen["MuJoCo"], unit, 1.4)
