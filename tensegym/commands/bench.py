@@ -13,14 +13,14 @@ from tensegym.errors import InputError
 from tensegym.report import Report, table
 
 FOLDER = Path(__file__).resolve().parents[2] / "benchmarks"
-PARTS = ("substep", "environment", "processes", "startup")
+PARTS = ("substep", "flexible_rods", "environment", "processes", "startup")
 
 
 @dataclass(frozen=True)
 class Bench:
     """Time what matters beside its peers, in turn in one run; needs a checkout and the extras train and dev."""
 
-    part: Literal["all", "substep", "environment", "processes", "startup"] = "all"
+    part: Literal["all", "substep", "flexible_rods", "environment", "processes", "startup"] = "all"
     """Which ratios; those of processes are of wall time and need a machine at rest."""
     rounds: int = 40
     """Blocks of each contestant: the medians' and spreads' samples."""
