@@ -31,5 +31,6 @@ def rows(rounds: int) -> Iterator[Row]:
     for name in robots:
         pairs = zip(seen[f"{name} substep"], seen[f"{name} engine"], strict=True)
         seen[f"{name} rest"] = [whole - engine for whole, engine in pairs]
-    for part, what in (("substep", "substep"), ("engine", "stepSimulation in it"), ("rest", "states, kernel and forces")):
+    parts = {"substep": "substep", "engine": "stepSimulation in it", "rest": "states, kernel and forces"}
+    for part, what in parts.items():
         yield row(f"flexible / rigid rods: {what}", seen[f"flexible {part}"], seen[f"rigid {part}"], UNIT)
