@@ -28,7 +28,7 @@ def step_back(poses: FloatArray, velocities: FloatArray, dt: float) -> None:
 @njit(cache=True)
 def sine_ratios(square):
     """sin(a) / a and (1 - cos(a)) / a^2 of a^2. A body turns by little in a step: below 0.1 rad the series is exact to
-    rounding, its first term left out being a^10 / 11! of the whole, and a fifth of the cost.
+    rounding, its first term left out being a^10 / 11! of the whole.
     """
     if square < 0.01:
         sine = 1 - square * (1 / 6 - square * (1 / 120 - square * (1 / 5040 - square * (1 / 362880))))
@@ -128,7 +128,8 @@ def _leapfrog(w, axis, across, along, dt, moment):
     """The angular velocity (3,) after a step: I(half a step on) w_new = I(half a step ago) w + dt moment.
 
     With the axis half a step on as axis + s w x axis + c w x (w x axis), solved for w_new with s, c and the last term
-    those of the last guess. Each pass gains a factor of about spin w dt^2 / 8, some 1e-5 while rolling.
+    those of the last guess. What slows it is the spin's change with the tilt: at 2 ms three passes leave some 1e-9 of
+    the moment at 3 rad/s, 1e-6 at 20 rad/s.
     """
     flat, inverse, half = along - across, 1 / across, 0.5 * dt
     middle = turned(axis, w, -half)
