@@ -89,8 +89,8 @@ def test_the_console_script_gives_one_line_and_no_traceback(tmp_path):
     assert done.returncode == 2
     assert done.stdout == ""
     lines = [line for line in done.stderr.splitlines() if not line.startswith("pybullet build time")]
-    assert lines == ["tensegym step: error: unknown preset 'seven_rod'; one of six_rod, paper, or a path that ends "
-                     "in .toml"]  # fmt: skip
+    assert lines == ["tensegym step: error: unknown preset 'seven_rod'; one of six_rod, paper, six_rod_flexible, or a "
+                     "path that ends in .toml"]  # fmt: skip
     assert not (tmp_path / "s").exists()
 
 
