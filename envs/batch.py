@@ -95,17 +95,19 @@ class Processes:
             self._pipes.append(ours)
             self._workers.append(worker)
         try:
-            self.spaces: tuple[spaces.Box, spaces.Box] = self._answers()[0]
+            self.spaces: tuple[spaces.Box, spaces.Box] = self._answers(
+                'did not start; a script makes environments under `if __name__ == "__main__":`, or takes processes=1'
+            )[0]
         except BaseException:
             self.close()
             raise
 
-    def _answers(self) -> list[Any]:
+    def _answers(self, ended: str = "has died") -> list[Any]:
         """One of every worker; all are taken before an error among them is raised, or the next would be out of turn."""
         try:
             answers = [pipe.recv() for pipe in self._pipes]
         except (EOFError, ConnectionError):
-            raise SimulationError("a process that steps environments has died") from None
+            raise SimulationError(f"a process that steps environments {ended}") from None
         for answer in answers:
             if isinstance(answer, Exception):
                 raise answer

@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import time
 
 import gymnasium as gym
@@ -102,3 +104,11 @@ def test_every_robot_has_its_picture():
     assert [picture.shape for picture in pictures] == [(360, 480, 3)] * 2
     assert (pictures[0] != pictures[1]).any()
     vector.close()
+
+
+def test_a_script_without_a_main_guard_is_told_so(tmp_path):
+    script = tmp_path / "bare.py"
+    script.write_text('import gymnasium, tensegym\ngymnasium.make_vec("tensegym/SixRodRolling-v0", 2, processes=2)\n')
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True)
+    assert done.returncode != 0
+    assert "did not start; a script makes environments under `if __name__" in done.stderr
