@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import mujoco
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from tensegym.cable_forces import DAMPING, LOCAL_A, LOCAL_B, STIFFNESS
 from tensegym.cables import cable_arrays
@@ -72,9 +73,17 @@ class Twin:
                 self.data.qvel[6 * b : 6 * b + 3] = velocities[b, :3]
                 self.data.qvel[6 * b + 3 : 6 * b + 6] = turn.reshape(3, 3).T @ velocities[b, 3:]  # body axes
 
-    def positions(self) -> FloatArray:
-        """(b, 3) centres of the bodies [m]."""
-        return self.data.qpos.reshape(-1, 7)[:, :3].copy()
+    def poses(self) -> FloatArray:
+        """(b, 7) position [m] and quaternion xyzw of every body."""
+        poses = self.data.qpos.reshape(-1, 7).copy()
+        poses[:, 3:] = np.roll(poses[:, 3:], -1, axis=1)
+        return poses
+
+    def velocities(self) -> FloatArray:
+        """(b, 6) linear [m/s] and angular [rad/s], in the world."""
+        velocities = self.data.qvel.reshape(-1, 6).copy()
+        velocities[:, 3:] = Rotation.from_quat(self.poses()[:, 3:]).apply(velocities[:, 3:])  # from body axes
+        return velocities
 
     def set_rest_lengths(self, natural: FloatArray) -> None:
         """Rest lengths (c,) of the tendons [m]."""
