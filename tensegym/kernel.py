@@ -11,17 +11,18 @@ from .geometry import cable_geometry, flexure_geometry, points_in_world
 from .pinned_step import step_pinned
 from .pins import second_poses
 from .rotation import turn_bodies
+from .terrain import distance_to_ground
 
 # Entries of the running account, all since the last reset
 DRIVE_WORK, ELECTRICAL_ENERGY, CENTRE_PATH, FOOT_PATH, FOOT_PATH_SUM = range(5)
 ACCOUNT_SIZE = 5
-GROUND_TOLERANCE = 1e-3  # m; a foot whose gap to the plane is below this is grounded
+GROUND_TOLERANCE = 1e-3  # m; a foot whose gap to the ground is below this is grounded
 
 
 @njit(cache=True)
 def substep(poses, angles, wrenches, last_poses, ends, cables, bodies, partner, pins, pin_params, natural, lengths,
-            tensions, rates, drive_constants, drives, first_driven, feet, foot_points, foot_radius, foot_positions,
-            masses, account, dt, implicit):  # fmt: skip
+            tensions, rates, drive_constants, drives, first_driven, heights, cell, feet, foot_points, foot_radius,
+            foot_positions, masses, account, dt, implicit):  # fmt: skip
     """One kernel a substep: geometry, tensions, wrenches (b, 6) in world axes about body centres, drives, account.
 
     Everything after ``pin_params`` and before ``dt``, and ``last_poses``, is state and is updated in place, and so are
@@ -56,19 +57,20 @@ def substep(poses, angles, wrenches, last_poses, ends, cables, bodies, partner, 
         natural[c] -= drives[d, PULLED]
         account[ELECTRICAL_ENERGY] += max(0.0, drives[d, CURRENT] * drives[d, VOLTAGE]) * dt
 
-    _account_feet(poses, last_poses, feet, foot_points, foot_radius, foot_positions, masses, account, dt)
+    _account_feet(poses, last_poses, heights, cell, feet, foot_points, foot_radius, foot_positions, masses, account)
     last_poses[:] = poses
 
 
 @njit(cache=True)
-def _account_feet(poses, last_poses, feet, foot_points, foot_radius, foot_positions, masses, account, dt):
+def _account_feet(poses, last_poses, heights, cell, feet, foot_points, foot_radius, foot_positions, masses, account):
     """Add the horizontal paths of the grounded feet's centres (mean and sum over feet) and of the centre of mass."""
     now = np.empty_like(foot_positions)
     points_in_world(poses, feet, foot_points, now)
     grounded, path = 0, 0.0
     for p in range(len(feet)):
         limit = foot_radius[p] + GROUND_TOLERANCE
-        if now[p, 2] <= limit and foot_positions[p, 2] <= limit:
+        height, before = distance_to_ground(now[p], heights, cell), distance_to_ground(foot_positions[p], heights, cell)
+        if height <= limit and before <= limit:
             grounded += 1
             path += np.sqrt((now[p, 0] - foot_positions[p, 0]) ** 2 + (now[p, 1] - foot_positions[p, 1]) ** 2)
     foot_positions[:] = now

@@ -27,6 +27,7 @@ from .readings import mechanical_energy, nodes_in_world, velocities_between
 from .rotation import step_back
 from .structure import FloatArray
 from .substeps import run
+from .terrain import FLAT, Terrain, distances_to_ground
 from .urdf_model import rod_files, urdf_files
 
 Integrator = Literal["auto", "explicit", "implicit"]
@@ -69,13 +70,14 @@ class TensegrityRobot:
     second halves. Rows of per-cable arrays are the elastic cables, the stiff cables, the payload's cables. A context
     manager; `close` frees the physics client.
 
-    dt is the physics time step [s]. ``integrator`` picks explicit or linearly implicit cable forces; "auto" takes
+    dt is the physics time step [s]. ground: the plane z = 0, none and no gravity, or a Terrain, flat where the robot
+    starts. ``integrator`` picks explicit or linearly implicit cable forces; "auto" takes
     explicit ones where dt is within their stability limit. Raises DesignError for a dt no integrator holds.
     ``compiled`` picks the substep loop, see World: both give the same bits.
     """
 
     def __init__(
-        self, design: RobotDesign | None = None, *, dt: float = 1e-3, ground: bool = True,
+        self, design: RobotDesign | None = None, *, dt: float = 1e-3, ground: bool | Terrain = True,
         integrator: Integrator = "auto", gui: bool = False, compiled: bool | None = None,
     ) -> None:  # fmt: skip
         self.design = design = design or RobotDesign()
@@ -91,8 +93,11 @@ class TensegrityRobot:
         self.gravity = np.array([0.0, 0.0, -design.gravity if ground else 0.0])
         self.world = World(dt, design.gravity if ground else 0.0, gui, compiled)
         self._load_bodies()
+        self._heights, self._cell = FLAT, 1.0
+        if isinstance(ground, Terrain):
+            self._heights, self._cell = ground.heights(self._radius()), ground.cell
         if ground:
-            self.world.add_ground(design.friction)
+            self.world.add_ground(design.friction, self._heights, self._cell)
         self._pristine = self.world.save()
 
         cables, drives = self.cables.first_flexure, len(design.standing.stiff_cables)
@@ -116,10 +121,18 @@ class TensegrityRobot:
         lengths, rates, tensions, natural = self._springs
         return (
             self._last_poses, cables.ends, cables.params, cables.bodies, pins.partner, pins.bodies, pins.params,
-            natural, lengths, tensions, rates, self._drive_constants, self.drives, cables.first_driven, cables.feet,
-            cables.foot_points, cables.foot_radii, self._foot_positions, cables.masses, self._account, self.dt,
-            self.implicit,
+            natural, lengths, tensions, rates, self._drive_constants, self.drives, cables.first_driven, self._heights,
+            self._cell, cables.feet, cables.foot_points, cables.foot_radii, self._foot_positions, cables.masses,
+            self._account, self.dt, self.implicit,
         )  # fmt: skip
+
+    def _radius(self) -> float:
+        """How far any foot reaches from the centre of mass at rest [m]."""
+        cables = self.cables
+        feet = np.empty((len(cables.feet), 3))
+        points_in_world(cables.rest_poses, cables.feet, cables.foot_points, feet)
+        centre = cables.masses @ cables.rest_poses[:, :3] / cables.masses.sum()
+        return float((np.linalg.norm(feet - centre, axis=1) + cables.foot_radii).max())
 
     def _load_bodies(self) -> None:
         design, poses = self.design, self.cables.rest_poses
@@ -230,6 +243,18 @@ class TensegrityRobot:
 
     def step(self, substeps: int = 1) -> None:
         """Advance by ``substeps`` time steps. Raises SimulationError when the simulation has diverged."""
+        if len(self._heights):
+            with self.world.fine_contacts():
+                self._advance(substeps)
+            self._check_ground()
+        else:
+            self._advance(substeps)
+        self.time += substeps * self.dt
+        fastest = np.abs(self.rates).max(initial=0.0)
+        if not fastest < SPEED_BOUND:
+            raise SimulationError(f"diverged at t = {self.time:.4g} s: a cable changes length at {fastest:.3g} m/s")
+
+    def _advance(self, substeps: int) -> None:
         world, wrenches, arguments = self.world, self._wrenches, self._kernel_arguments
         if world.compiled:
             for first in range(0, substeps, _MOST_AT_ONCE):
@@ -240,10 +265,14 @@ class TensegrityRobot:
             for _ in range(substeps):
                 kernel.substep(*world.read(), wrenches, *arguments)
                 world.step(wrenches)
-        self.time += substeps * self.dt
-        fastest = np.abs(self.rates).max(initial=0.0)
-        if not fastest < SPEED_BOUND:
-            raise SimulationError(f"diverged at t = {self.time:.4g} s: a cable changes length at {fastest:.3g} m/s")
+
+    def _check_ground(self) -> None:
+        """A surface of triangles, other than a plane, has an underside that holds what got there, and an edge."""
+        heights = distances_to_ground(self._foot_positions, self._heights, self._cell)
+        if not (heights >= -self.cables.foot_radii).all():
+            foot = int((~(heights >= -self.cables.foot_radii)).argmax())
+            where = "over the edge of" if np.isnan(heights[foot]) else "through"
+            raise SimulationError(f"foot {foot + 1} went {where} the ground by t = {self.time:.4g} s")
 
     # -- readings -------------------------------------------------------------------------------------------------
 
@@ -324,5 +353,5 @@ class TensegrityRobot:
         """(n,) 1.0 where a foot is within a millimetre of the ground, else 0.0."""
         if self.world.ground is None:
             return np.zeros(len(self._foot_positions))
-        gap = self.node_positions_in_world()[:, 2] - self.cables.foot_radii
+        gap = distances_to_ground(self.node_positions_in_world(), self._heights, self._cell) - self.cables.foot_radii
         return (gap <= kernel.GROUND_TOLERANCE).astype(float)

@@ -10,14 +10,15 @@ from tensegym.design import Payload, RobotDesign, flexible_design
 from tensegym.errors import SimulationError
 from tensegym.robot import TensegrityRobot
 from tensegym.state_window import NONE
+from tensegym.terrain import Terrain
 
 needs_symbols = pytest.mark.skipif(not direct_calls.AVAILABLE, reason="this PyBullet has no symbol table")
 
 
-def roll(design: RobotDesign, dt: float, compiled: bool) -> tuple[np.ndarray, ...]:
+def roll(design: RobotDesign, dt: float, compiled: bool, ground: bool | Terrain = True) -> tuple[np.ndarray, ...]:
     """Half a second of random commands on the ground, feet and rods in contact: the whole state after it."""
     rng = np.random.default_rng(1)
-    with TensegrityRobot(design, dt=dt, compiled=compiled) as robot:
+    with TensegrityRobot(design, dt=dt, compiled=compiled, ground=ground) as robot:
         robot.reset(0, 0.3)
         for _ in range(5):
             robot.command(rng.uniform(0, 1, len(robot.drives)) * robot.command_limit)
@@ -35,6 +36,14 @@ def roll(design: RobotDesign, dt: float, compiled: bool) -> tuple[np.ndarray, ..
 )
 def test_both_loops_give_the_same_bits(design, dt):
     for compiled, python in zip(roll(design, dt, True), roll(design, dt, False), strict=True):
+        np.testing.assert_array_equal(compiled, python)
+
+
+@needs_symbols
+def test_both_loops_give_the_same_bits_on_rough_ground():
+    rough = Terrain(roughness=0.05, reach=3.0)
+    for compiled, python in zip(roll(RobotDesign(), 2e-3, True, rough), roll(RobotDesign(), 2e-3, False, rough),
+                                strict=True):  # fmt: skip
         np.testing.assert_array_equal(compiled, python)
 
 

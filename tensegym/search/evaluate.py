@@ -52,7 +52,7 @@ class Outcome:
 
 def evaluate(design: RobotDesign, control: dict[str, Any], task: Task, seed: int) -> Episode:
     """Metrics of one episode. Raises DesignError or StructureError for what cannot be built."""
-    with TensegrityRobot(design, dt=task.dt) as robot:
+    with TensegrityRobot(design, dt=task.dt, ground=task.ground) as robot:
         return _episode(robot, controller(control), task, seed)
 
 
@@ -67,7 +67,7 @@ class Tried:
 def try_all(trial: Trial) -> Tried:
     """Every episode of a trial, without a bar. Raises DesignError or StructureError."""
     design, start = design_from_dict(trial.design), controller(trial.controller)
-    with TensegrityRobot(design, dt=trial.task.dt) as robot:
+    with TensegrityRobot(design, dt=trial.task.dt, ground=trial.task.ground) as robot:
         return Tried(trial.number, tuple(_episode(robot, start, trial.task, seed) for seed in trial.seeds))
 
 
@@ -77,7 +77,7 @@ def run_trial(trial: Trial) -> Outcome:
     try:
         design, start = design_from_dict(trial.design), controller(trial.controller)
         episodes: list[Episode] = []
-        with TensegrityRobot(design, dt=trial.task.dt) as robot:
+        with TensegrityRobot(design, dt=trial.task.dt, ground=trial.task.ground) as robot:
             start(robot, np.array([1.0, 0.0]))  # refuses what does not fit before any step
             for seed in trial.seeds:
                 episodes.append(_episode(robot, start, trial.task, seed))

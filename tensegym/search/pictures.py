@@ -79,7 +79,7 @@ def draw_best_gait(
     design: RobotDesign, control: dict[str, Any], task: Task, seed: int, rows: Sequence[Episode], out: Path
 ) -> None:
     """One episode of the found design, and the speeds of all."""
-    with TensegrityRobot(design, dt=TIME_STEP) as robot:
+    with TensegrityRobot(design, dt=TIME_STEP, ground=task.ground) as robot:
         direction, _ = start_of(robot, task, seed)
         meter, driver = GaitMeter(robot, direction), controller(control)(robot, direction)
         seen: Any = SimpleNamespace(robot=robot, direction=direction, meter=meter)

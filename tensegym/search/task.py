@@ -8,6 +8,7 @@ from typing import Any
 from tensegym.errors import DesignError, InputError
 from tensegym.parameters import bounded, check_ranges
 from tensegym.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP
+from tensegym.terrain import Terrain
 
 from .measure import Bound
 
@@ -20,6 +21,7 @@ class Task:
     random face at a random heading, towards a random direction; to step is to tip onto a neighbour of that face, drawn
     at random too, and the direction is the one across their edge. An episode without a tip in its first ``patience``
     seconds ends there, and one of stepping with the first tip. On a slope the wanted direction is uphill.
+    Rough ground is the same in all episodes, which cross it in their directions; see `tensegym.terrain`.
     """
 
     motion: str
@@ -29,16 +31,30 @@ class Task:
     patience: float = bounded(0, 3600, 4.0, "s", "given up without a tip in this time")
     dt: float = bounded(LEAST_TIME_STEP, LARGEST_TIME_STEP, 2e-3, "s", "physics time step")
     slope: float = bounded(0, 60, 0.0, "deg", "of the ground, uphill along the wanted direction")
+    roughness: float = bounded(0, 0.2, 0.0, "m", "root mean square height of the ground's bumps")
+    correlation_length: float = bounded(0.1, 5, 0.3, "m", "of the bumps")
     payload: float = bounded(0, 100, 0.0, "kg", "mass of the payload a design must carry; 0 asks for none")
 
     def __post_init__(self) -> None:
         check_ranges(self)
+        try:
+            self.ground  # noqa: B018 - refuses what is too large
+        except DesignError as error:
+            raise DesignError(f"Task.seconds = {self.seconds!r} is too long for rough ground: {error}") from error
+
+    @property
+    def ground(self) -> bool | Terrain:
+        """The plane, or bumps further than a robot gets at 1 m/s, some twice what the fastest ones make."""
+        if not self.roughness:
+            return True
+        return Terrain(self.roughness, self.correlation_length, reach=2.0 + self.seconds)
 
 
 MOTIONS: dict[str, dict[str, Any]] = {
     "roll": {"goal": "speed_lps >= 0.2"},
     "step": {"goal": "arrived >= 0.9", "seconds": 4.0},
     "climb": {"goal": "speed_lps >= 0.05", "slope": 10.0},
+    "cross": {"goal": "speed_lps >= 0.1", "roughness": 0.02},
     "carry": {"goal": "speed_lps >= 0.2", "payload": 0.5},
 }
 

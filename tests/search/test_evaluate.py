@@ -127,6 +127,15 @@ def test_without_friction_a_robot_slides_down_a_slope_as_a_block_does():
     assert meter.metrics().audit_excess < 1e-3  # what it gains in speed it loses in height
 
 
+def test_crossing_is_tried_on_the_same_bumps_by_every_worker(tiny):
+    task = tiny(('motion = "roll"', 'motion = "cross"'), ("seconds = 0.8", "seconds = 1.5")).task
+    control = {"gain": 2.0}
+    first, again = (evaluate(RobotDesign(), control, task, 7) for _ in range(2))
+    assert first == again
+    assert first["path"] > 0.2 and first["sound"] == 1.0
+    assert first != evaluate(RobotDesign(), control, replace(task, roughness=0.0), 7)
+
+
 def test_a_step_is_judged_by_the_face_it_was_to_reach(tiny):
     task = tiny(('motion = "roll"', 'motion = "step"'), ("seconds = 0.8", "seconds = 4.0")).task
     control = {"policy": "", "gain": 2.0}

@@ -48,6 +48,7 @@ def test_the_shipped_carry_task_begins_at_the_papers_numbers():
         ('motion = "roll"', 'motion = "fly"', ["'fly' is not one of roll, step"]),
         ('motion = "roll"', 'motion = "roll"\ngoal = "grace >= 1"', ["no metric measures 'grace'", "speed_lps"]),
         ("seconds = 0.8", "seconds = -1", ["Task.seconds = -1.0 is outside"]),
+        ("seconds = 0.8", "seconds = 80\nroughness = 0.02", ["Task.seconds = 80.0", "over 75 m"]),
         ("seconds = 0.8", "second = 0.8", ["unknown field 'second'", "seconds"]),
         ('sampler = "random"', 'sampler = "luck"', ["'luck' is not one of cmaes"]),
         ('sampler = "random"', 'sampler = "cmaes"\nobjectives = ["max tips", "min mass"]', ["cmaes takes one"]),
@@ -69,7 +70,7 @@ def test_a_space_is_needed():
         problem_from('task = "roll"', "nothing")
 
 
-@pytest.mark.parametrize("name", ["carry", "climb", "roll", "step"])
+@pytest.mark.parametrize("name", ["carry", "climb", "cross", "roll", "step"])
 def test_shipped_task_files_are_sound(name):
     problem = load_problem(name)
     assert problem.task.motion == name
