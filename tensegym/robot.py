@@ -246,10 +246,11 @@ class TensegrityRobot:
         if len(self._heights):
             with self.world.fine_contacts():
                 self._advance(substeps)
-            self._check_ground()
         else:
             self._advance(substeps)
         self.time += substeps * self.dt
+        if len(self._heights):
+            self._check_ground()
         fastest = np.abs(self.rates).max(initial=0.0)
         if not fastest < SPEED_BOUND:
             raise SimulationError(f"diverged at t = {self.time:.4g} s: a cable changes length at {fastest:.3g} m/s")
@@ -267,7 +268,7 @@ class TensegrityRobot:
                 world.step(wrenches)
 
     def _check_ground(self) -> None:
-        """A surface of triangles, other than a plane, has an underside that holds what got there, and an edge."""
+        """Raise SimulationError for a foot that is lost: other than a plane, bumps have an edge, and an underside."""
         heights = distances_to_ground(self._foot_positions, self._heights, self._cell)
         if not (heights >= -self.cables.foot_radii).all():
             foot = int((~(heights >= -self.cables.foot_radii)).argmax())
