@@ -54,7 +54,7 @@ MOTIONS: dict[str, dict[str, Any]] = {
     "roll": {"goal": "speed_lps >= 0.2"},
     "step": {"goal": "arrived >= 0.9", "seconds": 4.0},
     "climb": {"goal": "speed_lps >= 0.05", "slope": 10.0},
-    "cross": {"goal": "speed_lps >= 0.1", "roughness": 0.02},
+    "cross": {"goal": "speed_lps >= 0.2", "roughness": 0.02},
     "carry": {"goal": "speed_lps >= 0.2", "payload": 0.5},
 }
 
