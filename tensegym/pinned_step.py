@@ -17,8 +17,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from .pins import add_generalised, cross, dot, inertia_times, pinned_inertia
-from .rotation import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE, angular_velocity, turned
+from .pins import add_generalised, cross, inertia_times, pinned_inertia
+from .rotation import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE, angular_velocity, dot, turned
 
 _MOST_ITERATIONS, _TOLERANCE = 20, 1e-12  # changes of a velocity over (1 + the fastest); each is 1e-2 of the last
 

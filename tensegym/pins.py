@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from .rotation import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE
+from .rotation import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE, dot
 from .structure import FloatArray, IntArray
 
 # Columns of a pin's parameter row: the pin in the frames of the first and the second half, its axis in either
@@ -51,11 +51,6 @@ def _into_world(pose, local, out):
 @njit(cache=True)
 def cross(a, b, out):
     out[0], out[1], out[2] = a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-
-
-@njit(cache=True)
-def dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @njit(cache=True)
