@@ -9,8 +9,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tensegym import drives
+from tensegym.errors import DesignError
 from tensegym.robot import SPEED_BOUND, TensegrityRobot
 from tensegym.structure import FloatArray
+
+from .variation import Variation
 
 
 @dataclass(frozen=True)
@@ -18,7 +21,7 @@ class Part:
     """A run of the observation: its name, what its items are, and the bound of each entry."""
 
     name: str
-    kind: str  # node, drive, cable, rod: what one row belongs to
+    kind: str  # node, drive, cable, rod, robot: what one row belongs to
     rows: int
     width: int  # entries a row
     bound: float
@@ -139,3 +142,25 @@ class OnboardObservation(Observation):
 
 
 OBSERVATIONS = {"full": FullObservation, "onboard": OnboardObservation}
+
+
+class ConditionedObservation(Observation):
+    """Another observation, and where the robot's design lies in the ranges that designs vary over."""
+
+    def __init__(self, observation: Observation, robot: TensegrityRobot, variation: Variation) -> None:
+        self._observation = observation
+        self._place = variation.place(robot.design)
+        self.parts = (*observation.parts, Part("design", "robot", len(self._place), 1, 1.0))
+
+    def read(self, robot: TensegrityRobot, direction: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """As FullObservation.read."""
+        values, nodes, velocities = self._observation.read(robot, direction)
+        return np.concatenate([values, self._place]), nodes, velocities
+
+
+def observer(kind: str, robot: TensegrityRobot, variation: Variation | None = None) -> Observation:
+    """What reads a robot: full or onboard, with its design where designs vary. Raises DesignError for another kind."""
+    if kind not in OBSERVATIONS:
+        raise DesignError(f"observation = {kind!r} is not one of {', '.join(OBSERVATIONS)}")
+    plain = OBSERVATIONS[kind](robot)
+    return ConditionedObservation(plain, robot, variation) if variation else plain

@@ -20,8 +20,9 @@ from tensegym.picture import draw_in_window, render
 from tensegym.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityRobot
 
 from . import CONTROL_PERIOD
-from .observation import NODE_REACH, OBSERVATIONS
+from .observation import NODE_REACH, OBSERVATIONS, observer
 from .reward import RewardWeights, reward_terms
+from .variation import variation
 
 
 class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
@@ -49,6 +50,10 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
     Observation ``onboard``: rod axis (6 x 3) and turn rate across the axis (6 x 3, in 5 rad/s) in the heading frame,
     as an inertial unit on each rod reports them, then drive angle, speed and current.
 
+    With ``vary``, which maps fields of the design to ranges (see `tensegym.envs.variation`), the robot is another one
+    every ``episodes_per_design`` episodes and at every seeded reset: drawn uniformly, refused ones again. Either
+    observation then ends with where the design lies in each range, -1 to 1. With 0 episodes the design stays as given.
+
     An episode that leaves a bound has diverged or come apart, and ends; so the bounds hold by construction.
 
     Reward: progress of the centre of mass along the wanted direction, less ``slip`` times the path of the grounded
@@ -62,7 +67,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
     the last step that could be trusted.
 
     Arguments: design (a preset, a TOML file, a dict as one, or a RobotDesign), observation, control_period [s], dt
-    [s], settle [s], reward (weights to change, see RewardWeights), render_mode (None, rgb_array, human).
+    [s], settle [s], reward (weights to change, see RewardWeights), render_mode (None, rgb_array, human), vary,
+    episodes_per_design.
 
     ``reset(options=...)``: face (index), heading [rad], direction [rad], and design, which puts another robot with as
     many nodes, cables and drives into the same environment.
@@ -84,8 +90,12 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         settle: float = 0.3,
         reward: dict[str, float] | None = None,
         render_mode: str | None = None,
+        vary: dict[str, dict[str, Any]] | None = None,
+        episodes_per_design: int = 1,
     ) -> None:
-        EzPickle.__init__(self, design, observation, control_period, dt, settle, reward, render_mode)
+        EzPickle.__init__(
+            self, design, observation, control_period, dt, settle, reward, render_mode, vary, episodes_per_design
+        )
         if observation not in OBSERVATIONS:
             raise DesignError(f"observation = {observation!r} is not one of {', '.join(OBSERVATIONS)}")
         if render_mode not in (None, *self.metadata["render_modes"]):
@@ -98,6 +108,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
                                        ("settle", settle, 0.0, 60.0)):  # fmt: skip
             if not (isinstance(value, int | float) and low <= value <= high):
                 raise DesignError(f"{name} = {value!r} is outside [{low:g}, {high:g}] s")
+        if not (isinstance(episodes_per_design, int) and episodes_per_design >= 0):
+            raise DesignError(f"episodes_per_design = {episodes_per_design!r} must be a whole number, 0 or more")
         self.substeps = round(control_period / dt)
         if not (self.substeps >= 1 and math.isclose(self.substeps * dt, control_period, rel_tol=1e-6)):
             raise DesignError(f"control_period = {control_period!r} s must be a whole number of steps of dt = {dt!r} s")
@@ -107,7 +119,10 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         self.settle_steps = round(settle / dt)
         self.dt = dt
         self._observation_kind = observation
-        self.robot = self._build(as_design(design))
+        self._base = as_design(design)
+        self._variation = None if vary is None else variation(vary, self._base)
+        self._episodes_per_design, self._episodes_left = episodes_per_design, 0
+        self.robot = self._build(self._base)
         self._diverged = False
         bound = self.observer.bound
         self.observation_space: spaces.Box = spaces.Box(-bound, bound, dtype=np.float32)
@@ -127,7 +142,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
 
     def _build(self, design: RobotDesign) -> TensegrityRobot:
         robot = TensegrityRobot(design, dt=self.dt, gui=self.render_mode == "human")
-        self.observer = OBSERVATIONS[self._observation_kind](robot)
+        self.observer = observer(self._observation_kind, robot, self._variation)
         return robot
 
     def reset(
@@ -150,6 +165,11 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
             self._diverged = False
         if "design" in options:
             self._change_design(as_design(options["design"]))
+        elif self._variation and self._episodes_per_design:
+            if seed is not None or not self._episodes_left:
+                self._change_design(self._variation.draw(self._base, self.np_random))
+                self._episodes_left = self._episodes_per_design
+            self._episodes_left -= 1
         face = options.get("face", int(self.np_random.integers(len(self.robot.faces.triangles))))
         heading = options.get("heading", self.np_random.uniform(-math.pi, math.pi))
         direction = options.get("direction", self.np_random.uniform(-math.pi, math.pi))

@@ -18,11 +18,13 @@ class TrainConfig:
 
     steps: environment steps in all. rollout: steps of each environment between two updates. chunk: updates between
     two checkpoints; environments and random generators start afresh from (seed, steps done) at each, which is what
-    makes a resumed training equal one that was never killed.
+    makes a resumed training equal one that was never killed. start: a policy, shipped or a run's folder, whose networks
+    and running statistics the training begins with.
     """
 
     env_id: str = "tensegym/SixRodRolling-v0"
     env: dict[str, Any] = field(default_factory=dict)
+    start: str | None = None
     episode_seconds: float = 20.0
     n_envs: int = 8
     steps: int = 320_000

@@ -37,6 +37,7 @@ from tensegym.files import replace_file
 from tensegym.report import Report, table
 
 from .config import TrainConfig, load_config
+from .controllers import load_policy, policy_controller
 from .symmetric_policy import SymmetricPolicy, symmetry_arguments
 from .vec_env import RollingVecEnv
 
@@ -96,7 +97,7 @@ class Train:
             config, seed = load_config(self.config), self.seed
             data = config.as_dict() | ({} if self.steps is None else {"steps": self.steps})
             config = TrainConfig(**data)
-            make_env(config).close()  # a bad env argument fails here, before anything is written
+            _check(config)
             state = {"seed": seed, "steps": 0, "seconds": 0.0}
             out.mkdir(parents=True, exist_ok=True)
             (out / "config.yaml").write_text(yaml.safe_dump(config.as_dict(), sort_keys=False))
@@ -114,6 +115,16 @@ class Train:
                 "last": {k: float(v) for k, v in rows[-1].items()} if rows else {}}  # fmt: skip
         text = table(["run", "steps", "best median speed L/s"], [[str(out), model_steps, best]])
         return Report(text, data)
+
+
+def _check(config: TrainConfig) -> None:
+    """A bad env argument, or a start that does not fit it, fails here, before anything is written."""
+    probe = make_env(config)
+    try:
+        if config.start is not None:
+            load_policy(Path(policy_controller(config.start).path or ""), cast(RollingEnv, probe.unwrapped))
+    finally:
+        probe.close()
 
 
 def _extended(config: TrainConfig, steps: int, out: Path, state: dict[str, Any]) -> TrainConfig:
@@ -145,8 +156,7 @@ def train(config: TrainConfig, seed: int, out: Path, state: dict[str, Any]) -> i
             model = PPO.load(last / "model.zip", env=env, device="cpu")
         else:
             set_random_seed(seed)
-            env = VecNormalize(monitored, gamma=config.gamma, clip_obs=10.0)
-            model = _new_model(config, env, seed)
+            model, env = _begin(config, monitored, seed)
         model.set_logger(configure(str(out / "tensorboard"), ["tensorboard", "csv"]))
         chunk_steps = config.chunk * config.rollout_steps
         with tqdm(total=config.steps, initial=state["steps"], unit="step", desc=out.name, file=sys.stderr) as bar:
@@ -160,6 +170,18 @@ def train(config: TrainConfig, seed: int, out: Path, state: dict[str, Any]) -> i
     finally:
         workers.close()
     return state["steps"]
+
+
+def _begin(config: TrainConfig, monitored: VecMonitor, seed: int) -> tuple[PPO, VecNormalize]:
+    """Networks and statistics of an untrained policy, or those the config starts from."""
+    if config.start is None:
+        env = VecNormalize(monitored, gamma=config.gamma, clip_obs=10.0)
+        return _new_model(config, env, seed), env
+    folder = Path(policy_controller(config.start).path or "")
+    env = VecNormalize.load(str(folder / "vecnormalize.pkl"), monitored)
+    model = _new_model(config, env, seed)
+    model.policy.load_state_dict(PPO.load(folder / "model.zip", device="cpu").policy.state_dict())
+    return model, env
 
 
 def _new_model(config: TrainConfig, env: VecNormalize, seed: int) -> PPO:

@@ -28,7 +28,7 @@ def symmetry_arguments(env: RollingEnv) -> dict[str, list[list[int]]]:
                   "cable": np.argsort(g.cables), "rod": np.argsort(g.rods)}  # fmt: skip
         index, sign, start = [], [], 0
         for part in env.observer.parts:
-            rows = source[part.kind]
+            rows = source.get(part.kind, np.arange(part.rows))  # what is the whole robot's stays
             index.append(start + (rows[:, None] * part.width + np.arange(part.width)).ravel())
             flip = g.rod_flips[rows] if part.name == "rod axis" else np.ones(part.rows, dtype=int)
             sign.append(np.repeat(flip, part.width))
