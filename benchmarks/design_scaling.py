@@ -12,11 +12,14 @@ from __future__ import annotations
 
 import tempfile
 import time
+from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import joblib
 import tyro
+from timing import in_turn, row
 
 from tensegym.report import table
 from tensegym.search.asker import Asker
@@ -41,7 +44,9 @@ class Scaling:
     """Task file, for its space and sampler."""
 
     real: bool = False
-    """Instead: evaluate the task's start, one trial a second or so of a core, in processes."""
+    """Instead: evaluate the task's start, some seconds a round, in processes; each number of workers once a round."""
+    rounds: int = 5
+    """Of --real."""
 
     def run(self) -> str:
         if self.real:
@@ -69,21 +74,28 @@ class Scaling:
     def _run_real(self) -> str:
         problem = load_problem(self.task)
         tables = problem.space.apply(problem.space.start)
-        trials = [Trial(i, tables["design"], tables["controller"], problem.task, (i, i + 1)) for i in range(40)]
-        rows, first = [], 0.0
-        for workers in self.workers:
-            with JoblibEngine(workers) as engine:
-                list(engine.map(run_trial, trials[: 2 * workers]))  # imports, kernels, the policy
-                begun = time.perf_counter()
-                list(engine.map(run_trial, trials))
-                rate = len(trials) / (time.perf_counter() - begun)
-            first = first or rate
-            rows.append([workers, rate, rate / first])
-        return table(["workers", "trials/s", "over the first"], rows)
+        trials = [Trial(i, tables["design"], tables["controller"], problem.task, (i, i + 1)) for i in range(20)]
+        with ExitStack() as stack:
+            contestants = {}
+            for workers in self.workers:
+                pool = stack.enter_context(JoblibEngine(workers))
+                list(pool.map(run_trial, trials[: 3 * workers]))  # imports, kernels, the policy
+                contestants[str(workers)] = partial(_rate, pool, trials)
+            seen = in_turn(contestants, self.rounds)
+        first = seen[str(self.workers[0])]
+        found = [row(name, rates, first, "trials/s") for name, rates in seen.items()]
+        rows = [[r.name, r.ours, r.ratio, *r.spread] for r in found]
+        return table(["workers", "trials/s", "over the first, median", "10 %", "90 %"], rows)
 
     def _sleep(self, trial: Trial) -> Outcome:
         time.sleep(self.seconds)
         return _told(trial.number)
+
+
+def _rate(pool: JoblibEngine, trials: list[Trial]) -> float:
+    begun = time.perf_counter()
+    list(pool.map(run_trial, trials))
+    return len(trials) / (time.perf_counter() - begun)
 
 
 class Timed(Store):

@@ -1,0 +1,144 @@
+"""Designs that vary: where they lie in their ranges, what is drawn, and what an environment does with them."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from stable_baselines3.common.env_checker import check_env
+
+from tensegym.design import RobotDesign
+from tensegym.design_file import as_design, design_to_dict
+from tensegym.envs.rolling import RollingEnv
+from tensegym.envs.variation import Range, variation
+from tensegym.errors import DesignError
+from tensegym.search.problem import load_problem
+from tensegym.train.config import load_config
+
+VARY = {
+    "elastic_cable.stiffness": {"low": 200.0, "high": 800.0, "log": True},
+    "stiff_cable.max_pull": {"low": 0.3, "high": 0.6},
+}
+
+
+def place(design):
+    return variation(VARY, RobotDesign()).place(design)
+
+
+# -- ranges ------------------------------------------------------------------------------------------------------------
+
+
+@given(st.floats(1e-3, 1e3), st.floats(1.01, 100), st.booleans(), st.floats(0, 1))
+def test_part_undoes_value(low, ratio, log, part):
+    r = Range("elastic_cable.stiffness", low, low * ratio, log)
+    assert r.part(r.value(part)) == pytest.approx(part, abs=1e-9)
+
+
+def test_half_way_is_the_mean_or_with_log_the_geometric_mean():
+    assert Range("a.b", 200, 800).value(0.5) == pytest.approx(500)
+    assert Range("a.b", 200, 800, log=True).value(0.5) == pytest.approx(400)
+
+
+def test_a_design_outside_a_range_lies_at_its_nearer_end():
+    design = RobotDesign()
+    outside = design.with_(elastic_cable=design.elastic_cable.__class__(stiffness=5000.0))
+    assert place(outside).tolist() == [1.0, pytest.approx(0.0)]
+
+
+@settings(max_examples=20)
+@given(st.lists(st.floats(0, 1), min_size=2, max_size=2))
+def test_a_design_lies_where_it_was_put(parts):
+    put = variation(VARY, RobotDesign()).put(RobotDesign(), np.array(parts))
+    np.testing.assert_allclose(place(put), 2 * np.array(parts) - 1, atol=1e-9)
+    back = put.with_(elastic_cable=RobotDesign().elastic_cable, stiff_cable=RobotDesign().stiff_cable)
+    assert design_to_dict(back) == design_to_dict(RobotDesign())
+
+
+def test_draws_fill_the_ranges_and_repeat_with_their_seed():
+    ranges = variation(VARY, RobotDesign())
+    rng = np.random.default_rng(0)
+    places = np.array([ranges.place(ranges.draw(RobotDesign(), rng)) for _ in range(100)])
+    assert places.min() < -0.9 and places.max() > 0.9
+    assert np.abs(places.mean(axis=0)).max() < 0.25  # 4 standard errors of a uniform one
+    again = ranges.draw(RobotDesign(), np.random.default_rng(0))
+    np.testing.assert_array_equal(ranges.place(again), places[0])
+
+
+def test_ranges_without_one_sound_design_say_so():
+    # 30 N in cables of 1 to 2 N/m leave none of them a natural length
+    hopeless = {"elastic_cable.stiffness": {"low": 1.0, "high": 2.0}}
+    with pytest.raises(DesignError, match="were all refused, the last one: ElasticCable.pretension"):
+        variation(hopeless, RobotDesign()).draw(RobotDesign(), np.random.default_rng(0))
+
+
+@pytest.mark.parametrize(
+    ("vary", "words"),
+    [
+        ({}, "must map fields to ranges"),
+        ({"elastic_cable.stiffness": {"low": 1.0}}, "must give low and high"),
+        ({"elastic_cable.stiffness": {"low": 300.0, "high": 300.0}}, "from 300.0 to 300.0 is no range"),
+        ({"elastic_cable.damping": {"low": 0.0, "high": 3.0, "log": True}}, "above 0 with log"),
+        ({"elastic_cable.stiffness": {"low": -5.0, "high": 300.0}}, r"ElasticCable.stiffness = -5.0 is outside"),
+        ({"elastic_cable.stifness": {"low": 1.0, "high": 2.0}}, "'elastic_cable.stifness' is no number of the design"),
+        ({"elastic_cable.two_way": {"low": 0.0, "high": 1.0}}, "'elastic_cable.two_way' is no number"),
+        ({"payload.mass": {"low": 0.1, "high": 1.0}}, "'payload.mass' is no number of the design 'six_rod'"),
+    ],
+)
+def test_bad_ranges_are_refused(vary, words):
+    with pytest.raises(DesignError, match=words):
+        RollingEnv(vary=vary)
+
+
+def test_a_negative_number_of_episodes_is_refused():
+    with pytest.raises(DesignError, match="episodes_per_design = -1 must be a whole number, 0 or more"):
+        RollingEnv(vary=VARY, episodes_per_design=-1)
+
+
+# -- the environment ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", ["full", "onboard"])
+def test_the_observation_ends_with_the_place_of_the_robot(kind):
+    with RollingEnv(observation=kind, vary=VARY) as env, RollingEnv(observation=kind) as plain:
+        observation, _ = env.reset(seed=1)
+        assert design_to_dict(env.robot.design) != design_to_dict(RobotDesign())
+        np.testing.assert_allclose(observation[-2:], place(env.robot.design), rtol=1e-6)
+        without, _ = plain.reset(seed=2, options={"design": env.robot.design, "face": 3, "heading": 0.0,
+                                                  "direction": 1.0})  # fmt: skip
+        conditioned, _ = env.reset(options={"design": env.robot.design, "face": 3, "heading": 0.0, "direction": 1.0})
+        np.testing.assert_array_equal(conditioned[:-2], without)
+
+
+def test_sb3s_checker_finds_nothing():
+    with RollingEnv(observation="onboard", vary=VARY) as env:
+        check_env(env)
+
+
+def test_a_robot_stays_for_its_episodes_and_a_seed_draws_it_anew():
+    with RollingEnv(observation="onboard", vary=VARY, episodes_per_design=2, settle=0.0) as env:
+        seen = [env.reset(seed=4)[0][-2:], *(env.reset()[0][-2:] for _ in range(3)), env.reset(seed=4)[0][-2:]]
+    same = [np.array_equal(a, b) for a, b in zip(seen, seen[1:], strict=False)]
+    assert same == [True, False, True, False]
+    np.testing.assert_array_equal(seen[4], seen[0])
+
+
+def test_with_no_episodes_the_design_stays_as_given():
+    with RollingEnv(observation="onboard", vary=VARY, episodes_per_design=0, settle=0.0) as env:
+        for seed in (1, 2):
+            np.testing.assert_allclose(env.reset(seed=seed)[0][-2:], place(RobotDesign()), rtol=1e-6)
+
+
+def test_a_design_given_to_reset_is_not_drawn_over():
+    stiff = RobotDesign().with_(stiff_cable=RobotDesign().stiff_cable.__class__(max_pull=0.5))
+    with RollingEnv(observation="onboard", vary=VARY, settle=0.0) as env:
+        observation, _ = env.reset(seed=1, options={"design": stiff})
+        assert design_to_dict(env.robot.design) == design_to_dict(stiff)
+        assert observation[-1] == pytest.approx(1 / 3, rel=1e-6)
+
+
+def test_the_conditioned_policy_is_trained_on_the_designs_that_carry_searches():
+    env = load_config("conditioned").env
+    carry = load_problem("carry")
+    searched = [Range(".".join(d.path[1:]), d.low, d.high, d.log) for d in carry.space.dimensions
+                if d.path[0] == "design"]  # fmt: skip
+    assert list(variation(env["vary"], as_design(env["design"])).ranges) == searched
+    assert env["design"]["payload"]["mass"] == carry.task.payload
