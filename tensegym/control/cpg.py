@@ -19,10 +19,9 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cache
 from importlib import resources
-from typing import Any
 
 import numpy as np
 import tomli_w
@@ -71,16 +70,6 @@ class Cpg:
                 f"Cpg.amplitudes of {kinds} kinds of drives want as many lags and {kinds * TERMS} feedback weights; "
                 f"given {len(self.lags)} and {len(self.feedback)}"
             )
-
-    @classmethod
-    def from_dict(cls, data: dict[str, Any]) -> Cpg:
-        """From plain types; raises DesignError for a field there is not."""
-        allowed = [f.name for f in fields(cls)]
-        for name in data:
-            if name not in allowed:
-                raise DesignError(f"unknown field {name!r} in the controller; one of {', '.join(allowed)}")
-        values: dict[str, Any] = {k: float(v) if type(v) is int else v for k, v in data.items()}
-        return cls(**values)
 
 
 @cache
