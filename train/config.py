@@ -19,7 +19,7 @@ class TrainConfig:
     steps: environment steps in all. rollout: steps of each environment between two updates. chunk: updates between
     two checkpoints; environments and random generators start afresh from (seed, steps done) at each, which is what
     makes a resumed training equal one that was never killed. start: a policy, shipped or a run's folder, whose networks
-    and running statistics the training begins with.
+    and running statistics the training begins with; see start_policy.
     """
 
     env_id: str = "tensegym/SixRodRolling-v0"

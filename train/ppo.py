@@ -37,7 +37,7 @@ from tensegym.files import replace_file
 from tensegym.report import Report, table
 
 from .config import TrainConfig, load_config
-from .controllers import load_policy, policy_controller
+from .start_policy import begin_from, check_start
 from .symmetric_policy import SymmetricPolicy, symmetry_arguments
 from .vec_env import RollingVecEnv
 
@@ -120,11 +120,10 @@ class Train:
 def _check(config: TrainConfig) -> None:
     """A bad env argument, or a start that does not fit it, fails here, before anything is written."""
     probe = make_env(config)
-    try:
-        if config.start is not None:
-            load_policy(Path(policy_controller(config.start).path or ""), cast(RollingEnv, probe.unwrapped))
-    finally:
-        probe.close()
+    spaces = probe.observation_space.shape, probe.action_space.shape
+    probe.close()
+    if config.start is not None:
+        check_start(config, *spaces)
 
 
 def _extended(config: TrainConfig, steps: int, out: Path, state: dict[str, Any]) -> TrainConfig:
@@ -156,7 +155,10 @@ def train(config: TrainConfig, seed: int, out: Path, state: dict[str, Any]) -> i
             model = PPO.load(last / "model.zip", env=env, device="cpu")
         else:
             set_random_seed(seed)
-            model, env = _begin(config, monitored, seed)
+            env = VecNormalize(monitored, gamma=config.gamma, clip_obs=10.0)
+            model = _new_model(config, env, seed)
+            if config.start is not None:
+                begin_from(config.start, model, env)
         model.set_logger(configure(str(out / "tensorboard"), ["tensorboard", "csv"]))
         chunk_steps = config.chunk * config.rollout_steps
         with tqdm(total=config.steps, initial=state["steps"], unit="step", desc=out.name, file=sys.stderr) as bar:
@@ -170,18 +172,6 @@ def train(config: TrainConfig, seed: int, out: Path, state: dict[str, Any]) -> i
     finally:
         workers.close()
     return state["steps"]
-
-
-def _begin(config: TrainConfig, monitored: VecMonitor, seed: int) -> tuple[PPO, VecNormalize]:
-    """Networks and statistics of an untrained policy, or those the config starts from."""
-    if config.start is None:
-        env = VecNormalize(monitored, gamma=config.gamma, clip_obs=10.0)
-        return _new_model(config, env, seed), env
-    folder = Path(policy_controller(config.start).path or "")
-    env = VecNormalize.load(str(folder / "vecnormalize.pkl"), monitored)
-    model = _new_model(config, env, seed)
-    model.policy.load_state_dict(PPO.load(folder / "model.zip", device="cpu").policy.state_dict())
-    return model, env
 
 
 def _new_model(config: TrainConfig, env: VecNormalize, seed: int) -> PPO:

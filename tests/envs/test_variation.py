@@ -1,5 +1,7 @@
 """Designs that vary: where they lie in their ranges, what is drawn, and what an environment does with them."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -66,7 +68,7 @@ def test_draws_fill_the_ranges_and_repeat_with_their_seed():
 def test_ranges_without_one_sound_design_say_so():
     # 30 N in cables of 1 to 2 N/m leave none of them a natural length
     hopeless = {"elastic_cable.stiffness": {"low": 1.0, "high": 2.0}}
-    with pytest.raises(DesignError, match="were all refused, the last one: ElasticCable.pretension"):
+    with pytest.raises(DesignError, match=r"were all refused, the last one: ElasticCable\.pretension"):
         variation(hopeless, RobotDesign()).draw(RobotDesign(), np.random.default_rng(0))
 
 
@@ -116,7 +118,7 @@ def test_sb3s_checker_finds_nothing():
 def test_a_robot_stays_for_its_episodes_and_a_seed_draws_it_anew():
     with RollingEnv(observation="onboard", vary=VARY, episodes_per_design=2, settle=0.0) as env:
         seen = [env.reset(seed=4)[0][-2:], *(env.reset()[0][-2:] for _ in range(3)), env.reset(seed=4)[0][-2:]]
-    same = [np.array_equal(a, b) for a, b in zip(seen, seen[1:], strict=False)]
+    same = [np.array_equal(a, b) for a, b in pairwise(seen)]
     assert same == [True, False, True, False]
     np.testing.assert_array_equal(seen[4], seen[0])
 

@@ -217,3 +217,52 @@ def test_the_committed_configs_are_sound(name):
     assert env.spec.max_episode_steps * config.env["control_period"] == pytest.approx(config.episode_seconds)
     assert config.rollout_steps % config.batch_size == 0
     env.close()
+
+
+# -- starting from a trained policy ------------------------------------------------------------------------------------
+
+VARY = {"elastic_cable.stiffness": {"low": 200.0, "high": 800.0}}
+
+
+def started(tmp_path, tiny_config, start, **changes):
+    """A config file of the tiny training that starts from a policy."""
+    data = yaml.safe_load(tiny_config.read_text())
+    env = {**data["env"], **changes.pop("env", {})}
+    path = tmp_path / "started.yaml"
+    path.write_text(yaml.safe_dump({**data, "start": str(start), "env": env, **changes}))
+    return path
+
+
+def test_a_training_begins_as_the_policy_it_starts_from(tmp_path, tiny_config, tiny_run, cli):
+    # at a vanishing learning rate it also ends as that policy, and sees nothing of the design
+    config = started(tmp_path, tiny_config, tiny_run, steps=STEPS, learning_rate=1e-12, final_learning_rate=1e-12,
+                     env={"vary": VARY})  # fmt: skip
+    assert cli("train", "--config", config, "--out", tmp_path / "run")[0] == 0
+    with RollingEnv(**yaml.safe_load(tiny_config.read_text())["env"]) as plain:
+        before = load_policy(tiny_run, plain)
+    with RollingEnv(**yaml.safe_load(config.read_text())["env"]) as env:
+        after = load_policy(tmp_path / "run", env)
+        observation, _ = env.reset(seed=1)
+    assert np.abs(before(observation[:-1])).max() > 1e-6
+    # the running statistics have moved by the few steps of this run
+    np.testing.assert_allclose(after(observation), before(observation[:-1]), atol=0.02)
+    other = observation.copy()
+    other[-1] = -other[-1]
+    np.testing.assert_allclose(after(other), after(observation), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("changes", "word"),
+    [({"env": {"observation": "full"}}, "full"), ({"hidden": [9]}, "[9]"),
+     ({"env": {"design": {"structure": {"stiff_cables": [[3, 7], [4, 9]]}}}}, "(2,)")],
+)  # fmt: skip
+def test_a_start_that_does_not_fit_is_refused(tmp_path, tiny_config, tiny_run, cli, changes, word):
+    config = started(tmp_path, tiny_config, tiny_run, **changes)
+    assert_refused(cli("train", "--config", config, "--out", tmp_path / "run"), "start = ", word)
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_start_there_is_not_is_refused(tmp_path, tiny_config, cli):
+    config = started(tmp_path, tiny_config, tmp_path / "nowhere")
+    assert_refused(cli("train", "--config", config, "--out", tmp_path / "run"), "nowhere")
+    assert not (tmp_path / "run").exists()
