@@ -49,7 +49,7 @@ class Ranking:
     """Task file, for its motion and its controller's space."""
     designs: int = 30
     """Random designs."""
-    budget: int = 37
+    budget: int = 25
     """Trials of each design's search."""
     episodes: int = 20
     """New starts of a score."""
@@ -115,6 +115,7 @@ def for_design(task: str, design: RobotDesign) -> Problem:
     """The search of a task's controller parameters alone, for one design, at the environments' time step."""
     data = tomllib.loads(load_problem(task).text)
     data["task"]["dt"] = TIME_STEP
+    data["search"]["episodes"] = 4
     data["design"] = design_to_dict(design)
     data["space"] = {name: spec for name, spec in data["space"].items() if name.startswith("controller.")}
     return problem_from(tomli_w.dumps(data), f"{task} of one design")
