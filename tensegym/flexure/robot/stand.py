@@ -121,7 +121,7 @@ def _settle(robot: FlexibleRobot, place: float) -> float:
 def picture_of(robot: FlexibleRobot, size: tuple[int, int]) -> NDArray[np.uint8]:
     """(h, w, 3) what the stand's camera sees, twice as fine averaged: edges get their grey."""
     width, height = size
-    rgb, _ = robot.world.image(EYE, TARGET, 2 * width, 2 * height)
+    rgb, _ = robot.world.camera.image(EYE, TARGET, 2 * width, 2 * height)
     fine = rgb.reshape(height, 2, width, 2, 3).astype(float)
     return np.round(fine.mean(axis=(1, 3))).astype(np.uint8)
 
