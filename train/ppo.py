@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 import platform
-import shutil
 import subprocess
 import sys
 import time
@@ -24,7 +22,6 @@ import numpy as np
 import torch
 import yaml
 from stable_baselines3 import PPO
-from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import configure
 from stable_baselines3.common.utils import set_random_seed
 from stable_baselines3.common.vec_env import VecMonitor, VecNormalize
@@ -33,16 +30,14 @@ from tqdm import tqdm
 from tensegym.envs import CONTROL_PERIOD
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
-from tensegym.files import replace_file
 from tensegym.report import Report, table
 
+from .checkpoint import checkpoint_folder, last_state, write_checkpoint
 from .config import TrainConfig, load_config
 from .start_policy import begin_from, check_start
 from .symmetric_policy import SymmetricPolicy, symmetry_arguments
 from .vec_env import RollingVecEnv
-
-CURVE_FIELDS = ("steps", "hours", "episodes", "speed_lps", "speed_lps_p10", "slip_share", "tips", "audit_excess",
-                "action_std")  # fmt: skip
+from .watch import CURVE_FIELDS, Watch
 
 
 def make_env(config: TrainConfig) -> gym.Env:
@@ -85,7 +80,7 @@ class Train:
     def run(self) -> Report:
         out = self.out or Path("runs") / f"{Path(self.config).stem}-s{self.seed}"
         if self.resume:
-            state = _resume(out)
+            state = last_state(out)
             config, seed = load_config(str(out / "config.yaml")), state["seed"]
             if self.steps is not None:
                 config = _extended(config, self.steps, out, state)
@@ -150,7 +145,7 @@ def train(config: TrainConfig, seed: int, out: Path, state: dict[str, Any]) -> i
     monitored = VecMonitor(workers)
     try:
         if state["steps"]:
-            last = _checkpoint_folder(out, state["steps"])
+            last = checkpoint_folder(out, state["steps"])
             env = VecNormalize.load(str(last / "vecnormalize.pkl"), monitored)
             model = PPO.load(last / "model.zip", env=env, device="cpu")
         else:
@@ -165,10 +160,10 @@ def train(config: TrainConfig, seed: int, out: Path, state: dict[str, Any]) -> i
             while state["steps"] < config.steps:
                 began = time.perf_counter()
                 _start_chunk(model, env, config, seed, state["steps"])
-                model.learn(chunk_steps, callback=_Watch(bar, out, state), reset_num_timesteps=False)
+                model.learn(chunk_steps, callback=Watch(bar, out, state), reset_num_timesteps=False)
                 state["steps"] = model.num_timesteps
                 state["seconds"] += time.perf_counter() - began
-                _checkpoint(model, env, out, state)
+                write_checkpoint(model, env, out, state)
     finally:
         workers.close()
     return state["steps"]
@@ -195,80 +190,3 @@ def _start_chunk(model: PPO, env: VecNormalize, config: TrainConfig, seed: int, 
     left = 1 - steps / config.steps
     model.learning_rate = config.final_learning_rate + left * (config.learning_rate - config.final_learning_rate)
     model._setup_lr_schedule()
-
-
-def _checkpoint(model: PPO, env: VecNormalize, out: Path, state: dict[str, Any]) -> None:
-    """Write beside, then move: a kill leaves the old checkpoint or the new one, never half of one."""
-    fresh = out / "checkpoint.tmp"
-    shutil.rmtree(fresh, ignore_errors=True)
-    fresh.mkdir()
-    model.save(fresh / "model.zip")
-    env.save(str(fresh / "vecnormalize.pkl"))
-    (fresh / "state.json").write_text(json.dumps(state))
-    keep = _checkpoint_folder(out, state["steps"])
-    keep.parent.mkdir(exist_ok=True)
-    shutil.rmtree(keep, ignore_errors=True)
-    os.replace(fresh, keep)
-    _publish(keep, out)
-
-
-def _checkpoint_folder(out: Path, steps: int) -> Path:
-    return out / "checkpoints" / f"{steps:09d}"
-
-
-def _publish(checkpoint: Path, out: Path) -> None:
-    """Copy a checkpoint to the run's folder, where `evaluate` looks; resuming never reads these copies."""
-    for name in ("model.zip", "vecnormalize.pkl", "state.json"):
-        shutil.copy2(checkpoint / name, out / f"{name}.tmp")
-        os.replace(out / f"{name}.tmp", out / name)
-
-
-def _resume(out: Path) -> dict[str, Any]:
-    """State of the newest whole checkpoint, or of the start where a kill came before the first one.
-
-    Rows that the killed chunk left in curve.csv are dropped, since it is run again.
-    """
-    whole = sorted(folder for folder in (out / "checkpoints").glob("*") if folder.is_dir())
-    if whole:
-        _publish(whole[-1], out)
-    if not (out / "state.json").is_file():
-        raise FileNotFoundError(f"nothing to resume in {out}: no state.json")
-    state = json.loads((out / "state.json").read_text())
-    with (out / "curve.csv").open(newline="") as file:
-        header, *rows = list(csv.reader(file))
-    with replace_file(out / "curve.csv") as file:
-        csv.writer(file).writerows([header, *(row for row in rows if int(row[0]) <= state["steps"])])
-    return state
-
-
-class _Watch(BaseCallback):
-    """Progress bar, and one row of curve.csv an update from the episodes that ended in it."""
-
-    def __init__(self, bar: tqdm, out: Path, state: dict[str, Any]) -> None:
-        super().__init__()
-        self.bar, self.state, self.path = bar, state, out / "curve.csv"
-        self.began = time.perf_counter()
-        self.gaits: list[dict[str, Any]] = []
-
-    def _on_step(self) -> bool:
-        self.bar.update(self.training_env.num_envs)
-        for done, info in zip(self.locals["dones"], self.locals["infos"], strict=True):
-            if done:
-                self.gaits.append(info["gait"])
-        return True
-
-    def _on_training_end(self) -> None:
-        if not self.gaits:
-            return
-        speeds = np.array([g["speed_lps"] for g in self.gaits])
-        row = (
-            self.num_timesteps, (self.state["seconds"] + time.perf_counter() - self.began) / 3600, len(self.gaits),
-            np.median(speeds), np.quantile(speeds, 0.1), np.median([g["slip_share"] for g in self.gaits]),
-            np.mean([g["tips"] for g in self.gaits]), np.max([g["audit_excess"] for g in self.gaits]),
-            float(self.model.policy.log_std.detach().exp().mean()),
-        )  # fmt: skip
-        with self.path.open("a", newline="") as file:
-            csv.writer(file).writerow([f"{v:.6g}" if isinstance(v, float) else v for v in row])
-        for name, value in zip(CURVE_FIELDS[3:], row[3:], strict=True):
-            self.logger.record(f"gait/{name}", float(value))
-        self.bar.set_postfix_str(f"{np.median(speeds):.3f} L/s, slip {row[5]:.2f}, {row[6]:.0f} tips")
