@@ -4,6 +4,9 @@
 
 Compares at the number of trials that all have. Refused, stopped and out-of-constraint trials count as trials but never
 as the best. Hypervolumes are of objectives scaled so that the worst and best of all searches are 1 and 0.
+
+With --episodes the best is not the one as searched, which flatters whoever has the luckiest starts, but the mean of the
+first objective's winner over as many starts that no search drew.
 """
 
 from __future__ import annotations
@@ -17,6 +20,10 @@ from optuna._hypervolume import compute_hypervolume
 
 from tensegym.commands.design import open_search
 from tensegym.report import table
+from tensegym.search.confirm import TIME_STEP, over_starts, pick
+from tensegym.search.engine import JoblibEngine
+from tensegym.search.problem import Problem
+from tensegym.search.store import Finished
 from tensegym.search.winner import losses_of, pareto
 
 
@@ -28,6 +35,10 @@ class Compare:
     """Folders of searches of one task with different samplers and seeds."""
     trials: int | None = None
     """Trials to compare at; default: as many as all have."""
+    episodes: int = 0
+    """New starts that each search's winner is tried from, picked as `tensegym design report` does; 0: as searched."""
+    jobs: int = 1
+    """Processes."""
 
     def run(self) -> str:
         searches = []
@@ -39,10 +50,12 @@ class Compare:
         everything = np.concatenate(losses)
         low, high = everything.min(axis=0), everything.max(axis=0)
         objectives = searches[0][0].settings.objectives
-        several = len(objectives) > 1
+        several = len(objectives) > 1 and not self.episodes
         by_sampler: dict[str, list[float]] = {}
-        for (problem, _), rows in zip(searches, losses, strict=True):
-            if several:
+        for (problem, finished), rows in zip(searches, losses, strict=True):
+            if self.episodes:
+                score = self._confirmed(problem, {n: t for n, t in finished.items() if n < budget})
+            elif several:
                 scaled = (rows - low) / np.maximum(high - low, 1e-12)
                 score = float(compute_hypervolume(scaled[pareto(scaled)], np.ones(len(objectives))))
             else:
@@ -50,7 +63,15 @@ class Compare:
             by_sampler.setdefault(problem.settings.sampler, []).append(score)
         what = "hypervolume" if several else str(objectives[0])
         lines = [[name, len(v), budget, float(np.median(v)), min(v), max(v)] for name, v in by_sampler.items()]
+        what += f" over {self.episodes} new starts" if self.episodes else ""
         return table(["sampler", "seeds", "trials", f"{what}, median", "least", "most"], lines)
+
+    def _confirmed(self, problem: Problem, finished: Finished) -> float:
+        with JoblibEngine(self.jobs) as engine:
+            best = pick(problem, finished, engine, max(2, self.episodes // 2), skip=self.episodes)
+            rows = over_starts(problem, {(best, TIME_STEP): problem.space.apply(finished[best][0])}, self.episodes,
+                               0, engine)  # fmt: skip
+        return float(np.mean([row[problem.settings.objectives[0].metric] for row in rows[best, TIME_STEP]]))
 
 
 if __name__ == "__main__":

@@ -36,7 +36,7 @@ def confirm(problem: Problem, finished: Finished, engine: Engine, episodes: int,
     winner = pick(problem, finished, engine, max(2, episodes // 2), candidates, skip=episodes)
     both = {"start": problem.space.start, "found": finished[winner][0]}
     wanted = {(who, dt): problem.space.apply(v) for who, v in both.items() for dt in (TIME_STEP, TIME_STEP / 2)}
-    return Confirmed(winner, _try(problem, wanted, episodes, 0, engine))
+    return Confirmed(winner, over_starts(problem, wanted, episodes, 0, engine))
 
 
 def pick(
@@ -46,11 +46,11 @@ def pick(
     tables = {n: problem.space.apply(finished[n][0]) for n in ranked(problem, finished)[:candidates]}
     sign = 1 if problem.settings.objectives[0].maximise else -1
     metric = problem.settings.objectives[0].metric
-    rows = _try(problem, {(n, TIME_STEP): t for n, t in tables.items()}, episodes, skip, engine)
+    rows = over_starts(problem, {(n, TIME_STEP): t for n, t in tables.items()}, episodes, skip, engine)
     return max(tables, key=lambda n: sign * float(np.mean([row[metric] for row in rows[n, TIME_STEP]])))
 
 
-def _try(
+def over_starts(
     problem: Problem, wanted: Mapping[Any, Tables], episodes: int, skip: int, engine: Engine
 ) -> dict[Any, list[Episode]]:
     """Episodes of each of ``wanted``, keys ending in the time step, from seeds ``skip`` after the first on."""
