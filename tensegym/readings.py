@@ -1,16 +1,47 @@
-"""Compiled readings of a robot's state: feet, energies.
+"""Readings of a robot's state as functions of its arrays: velocities, nodes, momentum, energy; and totals by name.
 
 Poses (b, 7) are position and xyzw, velocities (b, 6) linear and angular.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numba import njit
+from scipy.spatial.transform import Rotation
 
 from .cable_forces import STIFFNESS, TWO_WAY
 from .geometry import cable_geometry, points_in_world, rotation_matrix
-from .rotation import angular_velocity
+from .rotation import angular_velocity, step_back
+from .structure import FloatArray
+
+
+@dataclass(frozen=True)
+class Energies:
+    """Mechanical energy of the robot [J]; gravity's is zero with every body centre at z = 0."""
+
+    kinetic: float
+    gravity: float
+    elastic: float
+
+    @property
+    def total(self) -> float:
+        return self.kinetic + self.gravity + self.elastic
+
+
+@dataclass(frozen=True)
+class Account:
+    """What has added up since the last reset. Lengths are horizontal [m], energies [J].
+
+    foot_path is the mean over the grounded feet of the path of their centres, foot_path_sum the sum over them.
+    """
+
+    drive_work: float
+    electrical_energy: float
+    centre_path: float
+    foot_path: float
+    foot_path_sum: float
 
 
 @njit(cache=True)
@@ -39,6 +70,19 @@ def nodes_in_world(poses, velocities, feet, foot_points):
         speeds[p, 1] = v[1] + v[5] * r0 - v[3] * r2
         speeds[p, 2] = v[2] + v[3] * r1 - v[4] * r0
     return positions, speeds
+
+
+def momentum(
+    poses: FloatArray, velocities: FloatArray, masses: FloatArray, inertias: FloatArray, dt: float
+) -> tuple[FloatArray, FloatArray]:
+    """Linear [kg m/s] and angular [kg m^2/s] about the world origin, each (3,), of bodies with principal ``inertias``
+    (b, 3): half a step of ``dt`` [s] ago, where the velocities live."""
+    linear = masses[:, None] * velocities[:, :3]
+    middle = poses.copy()
+    step_back(middle, velocities, dt / 2)
+    turns = Rotation.from_quat(middle[:, 3:])
+    spin = turns.apply(inertias * turns.inv().apply(velocities[:, 3:]))
+    return linear.sum(axis=0), (np.cross(poses[:, :3], linear) + spin).sum(axis=0)
 
 
 @njit(cache=True)
