@@ -68,7 +68,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
 
     Arguments: design (a preset, a TOML file, a dict as one, or a RobotDesign), observation, control_period [s], dt
     [s], settle [s], reward (weights to change, see RewardWeights), render_mode (None, rgb_array, human), vary,
-    episodes_per_design.
+    episodes_per_design, slope [deg] (of the ground, uphill along the wanted direction; what the robot sees of it is how
+    its parts move).
 
     ``reset(options=...)``: face (index), heading [rad], direction [rad], and design, which puts another robot with as
     many nodes, cables and drives into the same environment.
@@ -92,9 +93,11 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         render_mode: str | None = None,
         vary: dict[str, dict[str, Any]] | None = None,
         episodes_per_design: int = 1,
+        slope: float = 0.0,
     ) -> None:
         EzPickle.__init__(
-            self, design, observation, control_period, dt, settle, reward, render_mode, vary, episodes_per_design
+            self, design, observation, control_period, dt, settle, reward, render_mode, vary, episodes_per_design,
+            slope,
         )
         if observation not in OBSERVATIONS:
             raise DesignError(f"observation = {observation!r} is not one of {', '.join(OBSERVATIONS)}")
@@ -103,11 +106,12 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         if reward and set(reward) - {f.name for f in fields(RewardWeights)}:
             allowed = ", ".join(f.name for f in fields(RewardWeights))
             raise DesignError(f"unknown reward weight in {reward!r}; allowed: {allowed}")
-        for name, value, low, high in (("dt", dt, LEAST_TIME_STEP, LARGEST_TIME_STEP),
-                                       ("control_period", control_period, 1e-6, 60.0),
-                                       ("settle", settle, 0.0, 60.0)):  # fmt: skip
+        for name, value, low, high, unit in (("dt", dt, LEAST_TIME_STEP, LARGEST_TIME_STEP, "s"),
+                                             ("control_period", control_period, 1e-6, 60.0, "s"),
+                                             ("settle", settle, 0.0, 60.0, "s"),
+                                             ("slope", slope, 0.0, 60.0, "deg")):  # fmt: skip
             if not (isinstance(value, int | float) and low <= value <= high):
-                raise DesignError(f"{name} = {value!r} is outside [{low:g}, {high:g}] s")
+                raise DesignError(f"{name} = {value!r} is outside [{low:g}, {high:g}] {unit}")
         if not (isinstance(episodes_per_design, int) and episodes_per_design >= 0):
             raise DesignError(f"episodes_per_design = {episodes_per_design!r} must be a whole number, 0 or more")
         self.substeps = round(control_period / dt)
@@ -117,7 +121,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         self.render_mode = render_mode
         self.metadata = {**type(self).metadata, "render_fps": 1 / control_period}  # type: ignore[misc]
         self.settle_steps = round(settle / dt)
-        self.dt = dt
+        self.dt, self.slope = dt, slope
         self._observation_kind = observation
         self._base = as_design(design)
         self._variation = None if vary is None else variation(vary, self._base)
@@ -175,6 +179,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         direction = options.get("direction", self.np_random.uniform(-math.pi, math.pi))
         self.direction = np.array([math.cos(direction), math.sin(direction)])
         self.robot.reset(face, heading)
+        if self.slope:
+            self.robot.slope(math.radians(self.slope), self.direction)
         self.robot.step(self.settle_steps)
         self.meter = GaitMeter(self.robot, self.direction)
         self._gait = self.meter.metrics().as_dict()

@@ -119,6 +119,22 @@ def test_random_actions_stay_within_bounds_and_move_the_robot(env):
         assert np.abs(np.diff(seen, axis=0)).max(axis=1).min() > 0.01
 
 
+def test_a_slope_rises_along_the_wanted_direction():
+    with RollingEnv(observation="onboard", slope=10.0) as env:
+        for direction in (0.3, 2.0):
+            env.reset(seed=1, options={"direction": direction})
+            uphill = np.array([np.cos(direction), np.sin(direction)])
+            np.testing.assert_allclose(env.robot.gravity[:2], -9.81 * np.sin(np.radians(10)) * uphill, rtol=1e-12)
+            assert env.robot.gravity[2] == pytest.approx(-9.81 * np.cos(np.radians(10)))
+            rows = [env.step(np.full(6, -1.0))[4]["gait"] for _ in range(5)]
+            assert rows[-1]["audit_passed"] and abs(rows[-1]["speed_lps"]) < 0.02  # it stands: friction is 0.8
+
+
+def test_a_slope_out_of_range_is_refused():
+    with pytest.raises(DesignError, match=r"slope = 70 is outside \[0, 60\] deg"):
+        RollingEnv(slope=70)
+
+
 # -- what repeats ------------------------------------------------------------------------------------------------------
 
 
