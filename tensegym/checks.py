@@ -12,9 +12,10 @@ from scipy.spatial.transform import Rotation
 
 from . import drives as drive_kernel
 from .design import RobotDesign, flexible_design
-from .equilibrium import check_balance, count_states, feasible_self_stress, form_find
+from .equilibrium import check_balance, count_states, feasible_self_stress
 from .errors import StructureError
 from .faces import hull_faces, resting_height, tip_geometry
+from .form_finding import form_find
 from .modes import breathing_frequency, free_modes
 from .parameters import Drive, ElasticCable, Rod
 from .robot import TensegrityRobot

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from . import structure as structures
-from .equilibrium import check_balance, form_find
+from .equilibrium import check_balance
 from .errors import DesignError
+from .form_finding import form_find
 from .parameters import Drive, ElasticCable, Payload, Rod, RodFlexure, StiffCable, bounded, check_ranges
-from .structure import FloatArray, IntArray, Structure
+from .structure import FloatArray, IntArray, Structure, frozen
 
 if TYPE_CHECKING:
     from .flexure.pin import RodPin
@@ -95,24 +97,24 @@ class RobotDesign:
         """The structure at rest: form-found, or as given."""
         return self._standing  # type: ignore[attr-defined]
 
-    @property
+    @cached_property
     def active_rods(self) -> IntArray:
         """Rods that carry drives: (a,) indices, ascending."""
         driven = np.isin(self.structure.rods, self.structure.stiff_cables[:, 0]).any(axis=1)
-        return np.flatnonzero(driven)
+        return frozen(np.flatnonzero(driven))
 
     def rod(self, index: int) -> Rod:
         """The kind of rod at this index."""
         return self.active_rod if index in self.active_rods else self.passive_rod
 
-    @property
+    @cached_property
     def flexible_rods(self) -> IntArray:
         """Rods split by a flexure: (f,) indices, ascending."""
         every = np.arange(len(self.structure.rods))
         kinds = {"all": every, "active": self.active_rods, "passive": np.setdiff1d(every, self.active_rods)}
-        return kinds[self.flexure.rods] if self.flexure else every[:0]
+        return frozen(kinds[self.flexure.rods] if self.flexure else every[:0])
 
-    @property
+    @cached_property
     def rod_compressions(self) -> FloatArray:
         """(r,) force along each rod at rest, positive in compression [N]."""
         nodes, cables = self.standing.nodes, self.standing.cables
@@ -125,7 +127,7 @@ class RobotDesign:
         np.add.at(forces, cables[:, 1], -pull)
         first, last = self.standing.rods.T
         along = (nodes[last] - nodes[first]) / self.standing.rod_lengths[:, None]
-        return ((forces[first] - forces[last]) * along).sum(axis=1) / 2
+        return frozen(((forces[first] - forces[last]) * along).sum(axis=1) / 2)
 
     def half_length(self, rod: int) -> float:
         """Of the tube on either side of a split rod's hinge [m]. Raises DesignError when the hinge fills the rod."""

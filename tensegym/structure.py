@@ -7,6 +7,8 @@ column names). Lengths in m.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -51,8 +53,7 @@ class Structure:
         if not np.isfinite(nodes).all():
             bad = int(np.argwhere(~np.isfinite(nodes))[0, 0]) + 1
             raise StructureError(f"node {bad} is {nodes[bad - 1].tolist()}; coordinates must be finite numbers in m")
-        nodes.flags.writeable = False
-        object.__setattr__(self, "nodes", nodes)
+        object.__setattr__(self, "nodes", frozen(nodes))
         for name in ("rods", "cables", "stiff_cables"):
             object.__setattr__(self, name, _pairs(name, getattr(self, name), nodes))
         uses = np.bincount(self.rods.ravel(), minlength=len(nodes))
@@ -62,10 +63,10 @@ class Structure:
                 f"node {bad + 1} is on {uses[bad]} rods; in a class-1 tensegrity each node ends exactly one rod"
             )
 
-    @property
+    @cached_property
     def rod_lengths(self) -> FloatArray:
         """(r,) [m]"""
-        return self.lengths(self.rods)
+        return frozen(self.lengths(self.rods))
 
     def lengths(self, pairs: ArrayLike) -> FloatArray:
         """Distances between the nodes of each pair: (p, 2) -> (p,) [m]."""
@@ -75,6 +76,12 @@ class Structure:
     def with_nodes(self, nodes: ArrayLike) -> Structure:
         """The same members on other node positions (n, 3) [m]."""
         return Structure(np.asarray(nodes, dtype=float), self.rods, self.cables, self.stiff_cables)
+
+
+def frozen(array: NDArray[Any]) -> NDArray[Any]:
+    """The array itself, now read-only."""
+    array.flags.writeable = False
+    return array
 
 
 def _pairs(name: str, pairs: ArrayLike, nodes: FloatArray) -> IntArray:
@@ -91,8 +98,7 @@ def _pairs(name: str, pairs: ArrayLike, nodes: FloatArray) -> IntArray:
         if frozenset((a, b)) in seen:
             raise StructureError(f"{member} is listed twice")
         seen.add(frozenset((a, b)))
-    array.flags.writeable = False
-    return array
+    return frozen(array)
 
 
 def _six_rod_nodes(rod_length: float, spacing: float) -> FloatArray:
