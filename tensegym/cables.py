@@ -65,8 +65,7 @@ def cable_arrays(design: RobotDesign) -> CableArrays:
         kind, length = design.rod(i), float(structure.rod_lengths[i])
         along = (nodes[b] - nodes[a]) / length
         if i not in second:
-            turn = _turn_of_z_onto(along)
-            poses[i] = [*middles[i], *turn.as_quat()]
+            poses[i] = [*middles[i], *_turn_of_z_onto(along)]
             masses[i] = kind.mass
             across = kind.transverse_inertia(length)
             inertias[i] = [across, across, kind.axial_inertia]
@@ -87,40 +86,38 @@ def cable_arrays(design: RobotDesign) -> CableArrays:
         pins.append([i, second[i]])
         pin_params.append([0, 0, place - half.centre, 0, 0, place - (length - half.centre), 0, 1, 0])
         springs.append([0] * 6 + [pin.stiffness, design.flexure.loss_time * pin.stiffness, 1])
-    turns = Rotation.from_quat(np.where(masses[:, None] > 0, poses[:, 3:], [0, 0, 0, 1]))
-    kinds = [design.rod(int(np.flatnonzero((rods == node).any(axis=1))[0])) for node in range(len(nodes))]
-    foot_radii = np.array([max(rod.foot_radius, rod.tube_outer_radius) for rod in kinds])
+    radii = np.array([max(kind.foot_radius, kind.tube_outer_radius) for kind in map(design.rod, range(len(rods)))])
+    foot_radii = np.empty(len(nodes))
+    foot_radii[rods] = radii[:, None]
 
-    ends, params, natural = [], [], []
-    for pairs, cable, lengths in (
-        (structure.cables, design.elastic_cable, design.cable_natural_lengths),
-        (structure.stiff_cables, design.stiff_cable, design.stiff_cable_lengths),
-    ):
-        two_way = float(getattr(cable, "two_way", False))
-        for (a, b), rest in zip(pairs, lengths, strict=True):
-            # tied on the line between the two nodes, so that the rest position balances as if tied to the axis
-            line = (nodes[b] - nodes[a]) / np.linalg.norm(nodes[b] - nodes[a])
-            body_a, body_b = body_of_node[a], body_of_node[b]
-            local_a = local_of_node[a] + turns[body_a].inv().apply(design.attachment_radius * line)
-            local_b = local_of_node[b] - turns[body_b].inv().apply(design.attachment_radius * line)
-            ends.append([body_a, body_b])
-            params.append([*local_a, *local_b, cable.stiffness, cable.damping, two_way])
-            natural.append(rest)
+    pairs = np.concatenate([structure.cables, structure.stiff_cables])
+    elastic, stiff = design.elastic_cable, design.stiff_cable
+    rows = len(structure.cables) * [(elastic.stiffness, elastic.damping, elastic.two_way)]
+    rows += len(structure.stiff_cables) * [(stiff.stiffness, stiff.damping, False)]
+    # tied on the line between the two nodes, so that the rest position balances as if tied to the axis
+    lines = (nodes[pairs[:, 1]] - nodes[pairs[:, 0]]) / structure.lengths(pairs)[:, None]
+    offset, turns = design.attachment_radius * lines, Rotation.from_quat(poses[body_of_node, 3:]).as_matrix()
+    ties = [local_of_node[node] + np.einsum("cji,cj->ci", turns[node], own)
+            for node, own in zip(pairs.T, (offset, -offset), strict=True)]  # fmt: skip
+    ends, natural = [body_of_node[pairs]], [design.cable_natural_lengths, design.stiff_cable_lengths]
+    params = [np.column_stack([*ties, np.reshape(rows, (-1, 3))])]
     if payload:
         row = len(rods)
-        tied = {pair[0]: own[:3] for pair, own in zip(pins, pin_params, strict=True)}
-        for i, middle in enumerate(middles):
-            outward = (middle - centre) / np.linalg.norm(middle - centre)
-            ends.append([i, row])
-            params.append([*tied.get(i, (0, 0, 0)), *payload.radius * outward, payload.stiffness, payload.damping,
-                           payload.two_way])  # fmt: skip
-            natural.append(design.payload_natural_length)
+        outward = (middles - centre) / np.linalg.norm(middles - centre, axis=1)[:, None]
+        inner = np.zeros((row, 3))
+        for (first, _), own in zip(pins, pin_params, strict=True):
+            inner[first] = own[:3]
+        ends.append(np.column_stack([np.arange(row), np.full(row, row)]))
+        spring = [payload.stiffness, payload.damping, payload.two_way]
+        params.append(np.column_stack([inner, payload.radius * outward, np.tile(spring, (row, 1))]))
+        natural.append(np.full(row, design.payload_natural_length))
         poses[row] = [*centre, 0, 0, 0, 1]
         masses[row] = payload.mass
         inertias[row] = 0.4 * payload.mass * payload.radius**2
-    ends += pins
-    params += springs
-    natural += [0.0] * len(pins)
+    if pins:
+        ends.append(np.array(pins))
+        params.append(np.array(springs, dtype=float))
+        natural.append(np.zeros(len(pins)))
 
     bodies = np.zeros((count, 4))
     bodies[:, rotation.INVERSE_MASS] = 1 / masses
@@ -132,9 +129,9 @@ def cable_arrays(design: RobotDesign) -> CableArrays:
         partner[first], partner[last] = last, first
         bodies[[first, last], rotation.SPIN_DAMPING] = design.spin_damping / 2
     return CableArrays(
-        ends=np.array(ends, dtype=np.int64).reshape(-1, 2),
-        params=np.array(params, dtype=float).reshape(-1, 9),
-        natural=np.array(natural, dtype=float),
+        ends=np.concatenate(ends),
+        params=np.concatenate(params),
+        natural=np.concatenate(natural),
         bodies=bodies,
         rest_poses=poses,
         masses=masses,
@@ -159,12 +156,11 @@ def _pin_axis(along: FloatArray, outward: FloatArray, plane: str) -> FloatArray:
     return np.cross(along, outward) if plane == "radial" else outward
 
 
-def _turn_of_z_onto(axis: FloatArray) -> Rotation:
-    """The shortest rotation that takes the z axis onto ``axis``: a quaternion from two vectors."""
-    x, y, z = axis / np.linalg.norm(axis)
-    if z < -1 + 1e-12:
-        return Rotation.from_quat([1, 0, 0, 0])
-    return Rotation.from_quat([-y, x, 0, 1 + z])
+def _turn_of_z_onto(axis: FloatArray) -> FloatArray:
+    """The shortest rotation that takes the z axis onto a unit ``axis``, xyzw: a quaternion from two vectors."""
+    x, y, z = axis
+    turn = np.array([-y, x, 0, 1 + z] if z > -1 + 1e-12 else [1.0, 0, 0, 0])
+    return turn / np.linalg.norm(turn)
 
 
 def explicit_step_limit(arrays: CableArrays) -> float:

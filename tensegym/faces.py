@@ -38,13 +38,13 @@ def hull_faces(structure: Structure) -> Faces:
         hull = ConvexHull(nodes)
     except Exception as error:  # qhull's own error type is not public
         raise StructureError("the nodes span no volume, so there is no face to stand on") from error
+    a, b, c = hull.simplices.T
+    inward = (np.cross(nodes[b] - nodes[a], nodes[c] - nodes[a]) * hull.equations[:, :3]).sum(axis=1) < 0
+    rows = np.where(inward[:, None], hull.simplices[:, [0, 2, 1]], hull.simplices).tolist()
     triangles = []
-    for simplex, equation in zip(hull.simplices, hull.equations, strict=True):
-        a, b, c = simplex
-        if np.cross(nodes[b] - nodes[a], nodes[c] - nodes[a]) @ equation[:3] < 0:
-            b, c = c, b
-        first = int(np.argmin([a, b, c]))
-        triangles.append(tuple(int(n) for n in np.roll([a, b, c], -first)))
+    for row in rows:
+        first = row.index(min(row))
+        triangles.append((*row[first:], *row[:first]))
     triangles.sort(key=lambda t: (sorted(t), t))
     array = np.array(triangles)
     normals = np.cross(nodes[array[:, 1]] - nodes[array[:, 0]], nodes[array[:, 2]] - nodes[array[:, 0]])

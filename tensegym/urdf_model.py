@@ -93,7 +93,7 @@ def payload_urdf(payload: Payload) -> str:
 def urdf_files(design: RobotDesign) -> dict[str, str]:
     """File name -> URDF text for every body that the design needs.
 
-    Rods that differ in length get files of their own; `body_files` says which file each rod loads.
+    Rods that differ in length get files of their own; `rod_files` says which file each rod loads.
     """
     files: dict[str, str] = {}
     for index, name in enumerate(rod_files(design)):
