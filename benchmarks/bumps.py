@@ -1,46 +1,35 @@
-"""How fast a task's start design crosses bumps of growing height.
+"""How fast the default design and the one a search found cross bumps of growing height, on starts no search draws.
 
-    python benchmarks/bumps.py
+    tensegym design run --task cross --budget 97 --jobs 2 --out runs/cross
+    python benchmarks/bumps.py --folder runs/cross
 
-Episodes are as in the task, on seeds no search draws, and none is given up early.
+Prints mean speeds [L/s] with their standard errors over root mean square heights of the ground [m].
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from pathlib import Path
 
-import numpy as np
 import tyro
-
-from tensegym.report import table
-from tensegym.search.confirm import FIRST_SEED, TIME_STEP
-from tensegym.search.evaluate import Trial, try_all
-from tensegym.search.problem import load_problem
+from grounds import side_by_side
 
 
 @dataclass(frozen=True)
 class Bumps:
-    """Speed over root mean square heights of the ground."""
+    """Speed over heights of the ground's bumps of the default design and of a search's best trial."""
 
-    task: str = "cross"
-    """Task by name or file."""
+    folder: Path
+    """Folder of the search."""
     roughness: tuple[float, ...] = (0.0, 0.02, 0.05, 0.08)
     """Heights [m]."""
-    episodes: int = 12
+    episodes: int = 24
     """Starts a height."""
+    candidates: int = 5
+    """The best so many trials as searched, of which the best on other starts is taken."""
 
     def run(self) -> str:
-        problem, rows = load_problem(self.task), []
-        tables = problem.space.apply(problem.space.start)
-        seeds = tuple(FIRST_SEED + i for i in range(self.episodes))
-        for height in self.roughness:
-            task = replace(problem.task, roughness=height, dt=TIME_STEP, patience=problem.task.seconds)
-            tried = try_all(Trial(0, tables["design"], tables["controller"], task, seeds)).episodes
-            speeds = [e["speed_lps"] for e in tried]
-            rows.append([height, float(np.mean(speeds)), float(np.std(speeds, ddof=1) / np.sqrt(len(speeds))),
-                         float(np.median([e["slip_share"] for e in tried])), float(np.mean([e["tips"] for e in tried])),
-                         f"{sum(e['sound'] for e in tried):.0f} of {len(tried)}"])  # fmt: skip
-        return table(["roughness m", "mean L/s", "standard error", "slip share, median", "tips, mean", "sound"], rows)
+        return side_by_side(self.folder, "roughness", self.roughness, self.episodes, self.candidates)[0]
 
 
 if __name__ == "__main__":
