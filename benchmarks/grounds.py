@@ -45,8 +45,9 @@ def side_by_side(
     finished = store.finished()
     best = pick(problem, finished, JoblibEngine(1), episodes, candidates, skip=episodes)
     found = problem.space.apply(finished[best][0])
-    tasks = [replace(problem.task, **{field: v}, dt=TIME_STEP, patience=problem.task.seconds) for v in values]
+    changes: list[dict[str, Any]] = [{field: v, "dt": TIME_STEP, "patience": problem.task.seconds} for v in values]
     plain = {"design": {}, "controller": POLICY}
+    tasks = [replace(problem.task, **change) for change in changes]
     both = [(_tried(plain, task, episodes), _tried(found, task, episodes)) for task in tasks]
     rows = [[v, *d.row, *f.row, float((f.speed - d.speed) / np.hypot(f.error, d.error))]
             for v, (d, f) in zip(values, both, strict=True)]  # fmt: skip
