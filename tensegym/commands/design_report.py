@@ -14,6 +14,9 @@ from tensegym.search.winner import ranked
 
 from .design import open_search
 
+_SHOWN = {"speed_lps_median": "median L/s", "speed_lps_mean": "mean L/s", "slip_share_median": "slip share",
+          "drive_load_largest": "drive load", "audit_failures": "audit failures"}  # fmt: skip
+
 
 @dataclass(frozen=True)
 class DesignReport:
@@ -48,8 +51,8 @@ class DesignReport:
         with engine(self.engine, self.jobs, self.address) as pool:
             confirmed = confirm(problem, finished, pool, self.episodes)
         data = write_report(self.folder, problem, store, confirmed, others)
-        rows = [[name, c["speed_lps_median"], c["speed_lps_mean"], c["slip_share_median"], c["drive_load_largest"],
-                 c["audit_failures"]] for name, c in data["confirmed"].items()]  # fmt: skip
-        header = ["", "median L/s", "mean L/s", "slip share", "drive load", "audit failures"]
+        shown = {"goal_metric_mean": f"{problem.task.goal.metric}, mean"} | _SHOWN
+        rows = [[name, *(column[key] for key in shown)] for name, column in data["confirmed"].items()]
+        header = ["", *shown.values()]
         text = table(header, rows) + f"\ngoal {data['goal']}: {'met' if data['goal_met'] else 'not met'}"
         return Report(f"{text}\n{self.folder / 'report.md'}", data)

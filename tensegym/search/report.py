@@ -100,7 +100,11 @@ def write_report(
     draw_best_gait(design, tables["controller"], problem.task, FIRST_SEED, found, folder / "gait.png")
     pictures.append("![gait of the best design](gait.png)")
 
-    columns = {f"{who}, {1e3 * dt:g} ms": summary(rows) for (who, dt), rows in confirmed.rows.items()}
+    goal = problem.task.goal.metric
+    columns = {
+        f"{who}, {1e3 * dt:g} ms": {"goal_metric_mean": float(np.mean([row[goal] for row in rows]))} | summary(rows)
+        for (who, dt), rows in confirmed.rows.items()
+    }
     met = problem.task.goal.violation({k: float(np.mean([r[k] for r in found])) for k in found[0]}) <= 0
     data = {"folder": str(folder), "goal": str(problem.task.goal), "goal_met": met, "trial": confirmed.number,
             "trials": len(finished), "seconds": store.seconds(), "confirmed": columns, "importance": shares,
@@ -123,7 +127,8 @@ def _lines(problem: Problem, store: Store, values: dict[str, Any], data: dict[st
            f"**{'Met' if data['goal_met'] else 'Not met'}** by trial {data['trial']} of {data['trials']}; "
            f"{settings.sampler}, seed {settings.seed}, {data['seconds'] / 60:.0f} minutes.")  # fmt: skip
     yield ""
-    yield from _table(["", *columns], [[what, *(c[key] for c in columns.values())] for key, what in _ROWS.items()])
+    shown_rows = {"goal_metric_mean": f"{problem.task.goal.metric}, mean"} | _ROWS
+    yield from _table(["", *columns], [[what, *(c[key] for c in columns.values())] for key, what in shown_rows.items()])
     yield ""
     if len(data["best_so_far"]) > 1:
         yield from _table(["search", f"best {settings.objectives[0]}, as searched"], list(data["best_so_far"].items()))

@@ -25,7 +25,10 @@ def test_run_status_resume_report(cli, tiny_file, tmp_path):
     assert design(cli, "resume", "--folder", out, "--budget", 4)["trials"] == 4
     report = design(cli, "report", "--folder", out, "--episodes", 2, "--against", out)
     assert set(report["confirmed"]) == {"start, 2 ms", "start, 1 ms", "found, 2 ms", "found, 1 ms"}
+    found = report["confirmed"]["found, 2 ms"]
+    assert found["goal_metric_mean"] == pytest.approx(found["speed_lps_mean"], abs=0)  # the goal is one of speed
     text = (out / "report.md").read_text()
+    assert "| speed_lps, mean |" in text
     assert "design.elastic_cable.pretension" in text and "![gait" in text
     for name in ("progress.png", "gait.png", "best/design.toml", "best/controller.toml", "best/urdf/payload.urdf"):
         assert (out / name).is_file() == (name != "best/urdf/payload.urdf")
