@@ -1,4 +1,4 @@
-"""The default design beside the one a search found, over grounds of growing difficulty: inclines.py and bumps.py."""
+"""The default design beside a search's start and what it found, over growing difficulty: inclines.py and bumps.py."""
 
 from __future__ import annotations
 
@@ -35,25 +35,27 @@ class Tried:
 
 def side_by_side(
     folder: Path, field: str, values: Sequence[float], episodes: int, candidates: int
-) -> tuple[str, list[tuple[Tried, Tried]]]:
-    """Table over the values of a task's field, and what stands in it: the default design's row beside the found one's.
+) -> tuple[str, list[tuple[Tried, Tried, Tried]]]:
+    """Table over the values of a task's field, and what stands in it: the default design under the policy of level
+    ground, the search's start, what it found.
 
-    Both are tried from the same starts, which no search draws, at the environments' time step, to the end of the
+    All are tried from the same starts, which no search draws, at the environments' time step, to the end of the
     episode. The found one is the best on other such starts among the best ``candidates`` trials as searched.
     """
     problem, store = open_search(folder)
     finished = store.finished()
     best = pick(problem, finished, JoblibEngine(1), episodes, candidates, skip=episodes)
-    found = problem.space.apply(finished[best][0])
+    start, found = (problem.space.apply(values) for values in (problem.space.start, finished[best][0]))
     changes: list[dict[str, Any]] = [{field: v, "dt": TIME_STEP, "patience": problem.task.seconds} for v in values]
     plain = {"design": {}, "controller": POLICY}
     tasks = [replace(problem.task, **change) for change in changes]
-    both = [(_tried(plain, task, episodes), _tried(found, task, episodes)) for task in tasks]
-    rows = [[v, *d.row, *f.row, float((f.speed - d.speed) / np.hypot(f.error, d.error))]
-            for v, (d, f) in zip(values, both, strict=True)]  # fmt: skip
-    header = [field, *(f"{who} {what}" for who in ("default:", f"trial {best}:")
-                       for what in ("L/s", "its error", "slip", "sound")), "difference over its error"]  # fmt: skip
-    return table(header, rows), both
+    tried = [(_tried(plain, t, episodes), _tried(start, t, episodes), _tried(found, t, episodes)) for t in tasks]
+    rows = [[v, *d.row, *s.row, *f.row, float((f.speed - s.speed) / np.hypot(f.error, s.error))]
+            for v, (d, s, f) in zip(values, tried, strict=True)]  # fmt: skip
+    columns = [f"{who} {what}" for who in ("default:", "start:", f"trial {best}:")
+               for what in ("L/s", "its error", "slip", "sound")]  # fmt: skip
+    header = [field, *columns, "found less start, over its error"]
+    return table(header, rows), tried
 
 
 def _tried(tables: dict[str, Any], task: Task, episodes: int) -> Tried:

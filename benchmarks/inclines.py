@@ -1,4 +1,4 @@
-"""The steepest incline that the default design and the one a search found climb, on starts that no search draws.
+"""The steepest incline that the default design, a search's start and what it found climb, on starts no search draws.
 
     tensegym design run --task climb --budget 267 --jobs 2 --out runs/climb
     python benchmarks/inclines.py --folder runs/climb
@@ -19,7 +19,7 @@ CLIMBED = 0.05  # L/s
 
 @dataclass(frozen=True)
 class Inclines:
-    """Uphill speed over slopes of the default design and of a search's best trial."""
+    """Uphill speed over slopes of the default design, a search's start and its best trial."""
 
     folder: Path
     """Folder of the search."""
@@ -31,9 +31,9 @@ class Inclines:
     """The best so many trials as searched, of which the best on other starts is taken."""
 
     def run(self) -> str:
-        text, both = side_by_side(self.folder, "slope", self.slopes, self.episodes, self.candidates)
-        for place, who in enumerate(("default", "found")):
-            climbed = [f"{s:g} deg" for s, pair in zip(self.slopes, both, strict=True) if pair[place].speed >= CLIMBED]
+        text, tried = side_by_side(self.folder, "slope", self.slopes, self.episodes, self.candidates)
+        for place, who in enumerate(("default", "start", "found")):
+            climbed = [f"{s:g} deg" for s, row in zip(self.slopes, tried, strict=True) if row[place].speed >= CLIMBED]
             text += f"\nsteepest at {CLIMBED:g} L/s or more, {who}: {climbed[-1] if climbed else 'none'}"
         return text
 
