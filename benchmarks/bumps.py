@@ -1,6 +1,6 @@
 """How fast the default design and the one a search found cross bumps of growing height, on starts no search draws.
 
-    tensegym design run --task cross --budget 97 --jobs 2 --out runs/cross
+    tensegym design run --task cross --budget 61 --out runs/cross
     python benchmarks/bumps.py --folder runs/cross
 
 Prints mean speeds [L/s] with their standard errors over root mean square heights of the ground [m].
