@@ -207,7 +207,7 @@ def test_a_missing_or_unknown_config_and_no_steps_are_refused(tmp_path, cli):
     assert not out.exists()
 
 
-@pytest.mark.parametrize("name", ["rolling", "onboard", "flexible", "conditioned", "climb", "carry"])
+@pytest.mark.parametrize("name", ["rolling", "onboard", "flexible", "conditioned", "climb", "carry", "steep"])
 def test_the_committed_configs_are_sound(name):
     from tensegym.train.config import load_config
     from tensegym.train.ppo import make_env
