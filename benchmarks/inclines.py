@@ -1,7 +1,7 @@
 """The steepest incline that the default design, a search's start and what it found climb, on starts no search draws.
 
-    tensegym design run --task climb --budget 267 --jobs 2 --out runs/climb
-    python benchmarks/inclines.py --folder runs/climb --episodes 48 --candidates 5 --slopes 8 12 14
+    tensegym design run --task climb --budget 113 --out runs/climb
+    python benchmarks/inclines.py --folder runs/climb
 
 Prints mean uphill speeds [L/s] with their standard errors. A slope is climbed at a mean of 0.05 L/s or more.
 """
