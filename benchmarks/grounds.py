@@ -49,20 +49,21 @@ def side_by_side(
     changes: list[dict[str, Any]] = [{field: v, "dt": TIME_STEP, "patience": problem.task.seconds} for v in values]
     plain = {"design": {}, "controller": POLICY}
     tasks = [replace(problem.task, **change) for change in changes]
-    tried = [(_tried(plain, t, episodes), _tried(start, t, episodes), _tried(found, t, episodes)) for t in tasks]
+    rows_of = [(tried(plain, t, episodes), tried(start, t, episodes), tried(found, t, episodes)) for t in tasks]
     rows = [[v, *d.row, *s.row, *f.row, float((f.speed - s.speed) / np.hypot(f.error, s.error))]
-            for v, (d, s, f) in zip(values, tried, strict=True)]  # fmt: skip
+            for v, (d, s, f) in zip(values, rows_of, strict=True)]  # fmt: skip
     columns = [f"{who} {what}" for who in ("default:", "start:", f"trial {best}:")
                for what in ("L/s", "its error", "slip", "sound")]  # fmt: skip
     header = [field, *columns, "found less start, over its error"]
-    return table(header, rows), tried
+    return table(header, rows), rows_of
 
 
-def _tried(tables: dict[str, Any], task: Task, episodes: int) -> Tried:
+def tried(tables: dict[str, Any], task: Task, episodes: int) -> Tried:
+    """A design and its controller, as tables, over new starts of a task."""
     seeds = tuple(FIRST_SEED + i for i in range(episodes))
-    tried = try_all(Trial(0, tables["design"], tables["controller"], task, seeds)).episodes
-    speeds = np.array([e["speed_lps"] for e in tried])
+    rows = try_all(Trial(0, tables["design"], tables["controller"], task, seeds)).episodes
+    speeds = np.array([e["speed_lps"] for e in rows])
     return Tried(
         float(speeds.mean()), float(speeds.std(ddof=1) / np.sqrt(len(speeds))),
-        float(np.median([e["slip_share"] for e in tried])), f"{sum(e['sound'] for e in tried):.0f} of {len(tried)}",
+        float(np.median([e["slip_share"] for e in rows])), f"{sum(e['sound'] for e in rows):.0f} of {len(rows)}",
     )  # fmt: skip

@@ -25,7 +25,7 @@ class Evaluate:
     """Evaluate a policy and the baselines from random faces and headings; writes metrics.json, gait.png, roll.mp4."""
 
     policy: str = "rolling"
-    """A run's folder, or a shipped policy: rolling, onboard, flexible."""
+    """A run's folder, or a shipped policy: rolling, onboard, flexible, carry, climb, steep, conditioned."""
     out: Path = Path("evaluation")
     """Folder for metrics.json, gait.png and roll.mp4."""
     episodes: int = 100
@@ -119,7 +119,7 @@ class Roll:
     """Watch the shipped policy roll: a quick evaluation with pictures and a video."""
 
     policy: str = "rolling"
-    """A run's folder, or a shipped policy: rolling, onboard, flexible."""
+    """A run's folder, or a shipped policy: rolling, onboard, flexible, carry, climb, steep, conditioned."""
     out: Path = Path("roll")
     """Folder for metrics.json, gait.png and roll.mp4."""
     episodes: int = 10

@@ -67,7 +67,7 @@ class Train:
     """Train a rolling policy with PPO and save it with its curve."""
 
     config: str = "rolling"
-    """A committed config (rolling, onboard, flexible) or the path of a YAML file."""
+    """A committed config (rolling, onboard, flexible, conditioned, carry, climb, steep) or the path of a YAML file."""
     out: Path | None = None
     """Folder of the run; default runs/CONFIG-sSEED. One folder a run."""
     seed: int = 0
