@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from tensegym.errors import InputError, SimulationError
+from tensegym.report import Report
 from tensegym.train.controllers import Controller, load_policy, policy_controller
+from tensegym.train.evaluate import Evaluate, Roll
 from tensegym.train.trials import run_trials, summarise
 from tests.conftest import assert_refused
 
@@ -178,3 +180,10 @@ def test_watching_in_a_window_without_a_display_is_refused(tiny_run, tmp_path, c
     monkeypatch.chdir(tmp_path)
     assert_refused(cli("roll", "--policy", tiny_run, "--window"), "no display")
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("policy", "plain"), [("rolling", True), ("climb", True), ("carry", False)])
+def test_roll_judges_baselines_on_the_default_robot_only(policy, plain, monkeypatch):
+    # another robot's walker would take minutes to tabulate, and roll is a quick look
+    monkeypatch.setattr(Evaluate, "run", lambda self: Report("", {"baselines": self.baselines}))
+    assert Roll(policy).run().data["baselines"] is plain
