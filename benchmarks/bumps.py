@@ -1,4 +1,4 @@
-"""How fast the default design and the one a search found cross bumps of growing height, on starts no search draws.
+"""How fast the default design, a search's start and what it found cross bumps of growing height, on new starts.
 
     tensegym design run --task cross --budget 61 --out runs/cross
     python benchmarks/bumps.py --folder runs/cross
@@ -17,7 +17,7 @@ from grounds import side_by_side
 
 @dataclass(frozen=True)
 class Bumps:
-    """Speed over heights of the ground's bumps of the default design and of a search's best trial."""
+    """Speed over heights of the ground's bumps of the default design, a search's start and its best trial."""
 
     folder: Path
     """Folder of the search."""

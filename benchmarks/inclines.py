@@ -15,6 +15,7 @@ from pathlib import Path
 import tyro
 from grounds import Tried, side_by_side, tried
 
+from tensegym.errors import InputError
 from tensegym.report import table
 from tensegym.search.confirm import TIME_STEP
 from tensegym.search.problem import load_problem
@@ -39,6 +40,8 @@ class Inclines:
     """The best so many trials as searched, of which the best on other starts is taken."""
 
     def run(self) -> str:
+        if (self.folder is None) == (not self.policies):
+            raise InputError("give --folder of a search, or --policies such as onboard climb steep")
         if self.folder is not None:
             text, rows = side_by_side(self.folder, "slope", self.slopes, self.episodes, self.candidates)
             return text + "".join(

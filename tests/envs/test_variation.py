@@ -1,5 +1,6 @@
 """Designs that vary: where they lie in their ranges, what is drawn, and what an environment does with them."""
 
+import warnings
 from itertools import pairwise
 
 import numpy as np
@@ -111,7 +112,8 @@ def test_the_observation_ends_with_the_place_of_the_robot(kind):
 
 
 def test_sb3s_checker_finds_nothing():
-    with RollingEnv(observation="onboard", vary=VARY) as env:
+    with RollingEnv(observation="onboard", vary=VARY) as env, warnings.catch_warnings():
+        warnings.simplefilter("error")
         check_env(env)
 
 
@@ -137,9 +139,11 @@ def test_a_design_given_to_reset_is_not_drawn_over():
         assert observation[-1] == pytest.approx(1 / 3, rel=1e-6)
 
 
-def test_the_conditioned_policy_is_trained_on_the_designs_that_carry_searches():
-    env = load_config("conditioned").env
-    carry = load_problem("carry")
+@pytest.mark.parametrize("task", ["carry", "carry_conditioned"])
+@pytest.mark.parametrize("config", ["conditioned", "carry"])
+def test_a_policy_is_trained_on_the_designs_that_its_task_searches(config, task):
+    env = load_config(config).env
+    carry = load_problem(task)
     searched = [Range(".".join(d.path[1:]), d.low, d.high, d.log) for d in carry.space.dimensions
                 if d.path[0] == "design"]  # fmt: skip
     assert list(variation(env["vary"], as_design(env["design"])).ranges) == searched
