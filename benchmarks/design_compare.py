@@ -18,7 +18,7 @@ import numpy as np
 import tyro
 from optuna._hypervolume import compute_hypervolume
 
-from tensegym.commands.design import open_search
+from tensegym.cli.design import open_search
 from tensegym.report import table
 from tensegym.search.confirm import TIME_STEP, over_starts, pick
 from tensegym.search.engine import JoblibEngine

@@ -24,8 +24,8 @@ import tyro
 from scipy.stats import spearmanr
 from tqdm import tqdm
 
-from tensegym.design import RobotDesign
-from tensegym.design_file import as_design, design_to_dict
+from tensegym.design.design import RobotDesign
+from tensegym.design.design_file import as_design, design_to_dict
 from tensegym.envs.variation import variation
 from tensegym.report import table
 from tensegym.search.confirm import FIRST_SEED, TIME_STEP

@@ -23,7 +23,7 @@ ARGUMENTS: dict[str, Any] = {"settle": 0.0}
 
 def make_single(compiled: bool = True) -> gym.Env:
     """What a user without a vector environment makes; ``compiled=False`` is how substeps were made before."""
-    from tensegym import direct_calls
+    from tensegym.bullet import c_interface as direct_calls
 
     direct_calls.AVAILABLE = direct_calls.AVAILABLE and compiled
     return gym.make("tensegym/SixRodRolling-v0", max_episode_steps=EPISODE, **ARGUMENTS)

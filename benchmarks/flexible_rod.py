@@ -27,15 +27,16 @@ from pathlib import Path
 import numpy as np
 from scipy.linalg import eigh
 
-from tensegym.flexure import fem, newton
-from tensegym.flexure.buckling import buckling_load
-from tensegym.flexure.frame import assemble, memory
-from tensegym.flexure.hinge import Hinge, Material
-from tensegym.flexure.joint import Joint, fit_joint
-from tensegym.flexure.pin import rod_pin, rod_states
-from tensegym.flexure.presets import leaf_spring
-from tensegym.flexure.robot import FlexibleRobot, FlexureJoint, Load
-from tensegym.flexure.robot.stand import Vibration
+from tensegym.flexible import FlexibleRobot, FlexureJoint, Load
+from tensegym.flexible.stand import Vibration
+from tensegym.flexure.fem import newton
+from tensegym.flexure.fem import solve as fem
+from tensegym.flexure.fem.buckling import buckling_load
+from tensegym.flexure.fem.frame import assemble, memory
+from tensegym.flexure.hinge.hinge import Hinge, Material
+from tensegym.flexure.hinge.presets import leaf_spring
+from tensegym.flexure.models.joint import Joint, fit_joint
+from tensegym.flexure.models.rod_pin import rod_pin, rod_states
 from tensegym.report import table
 
 LENGTH, TUBE, END = 0.7017, 0.014, 0.05  # m; kg of a half tube, of an end

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from substep import Rolling
 from timing import Row, in_turn, row
 
-from tensegym.design import RobotDesign, flexible_design
+from tensegym.design.design import RobotDesign, flexible_design
 
 UNIT = "us a substep"
 

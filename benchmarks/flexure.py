@@ -22,13 +22,14 @@ from functools import partial
 
 import numpy as np
 
-from tensegym.flexure import fem, newton
-from tensegym.flexure import potential_kernel as kernel
-from tensegym.flexure.hinge import Hinge
-from tensegym.flexure.joint import fit_joint
-from tensegym.flexure.potential import Potential
-from tensegym.flexure.presets import PAPER_HINGES, preset
-from tensegym.flexure.timing import POINTS, best_of, sweep_times
+from tensegym.flexure.fem import newton
+from tensegym.flexure.fem import solve as fem
+from tensegym.flexure.hinge.hinge import Hinge
+from tensegym.flexure.hinge.presets import PAPER_HINGES, preset
+from tensegym.flexure.models import potential_kernel as kernel
+from tensegym.flexure.models.joint import fit_joint
+from tensegym.flexure.models.potential import Potential
+from tensegym.flexure.models.timing import POINTS, best_of, sweep_times
 from tensegym.report import table
 
 ANGLE = np.radians(30.0)

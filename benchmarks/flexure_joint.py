@@ -31,12 +31,12 @@ from scipy.spatial.transform import Rotation
 
 from tensegym.bullet import packaged_urdf
 from tensegym.errors import SimulationError
-from tensegym.flexure.joint import Joint, fit_joint
-from tensegym.flexure.potential_kernel import stiffness, wrench
-from tensegym.flexure.presets import PAPER_HINGES, preset
-from tensegym.flexure.robot.flexible_robot import FlexibleRobot
-from tensegym.flexure.robot.flexure_joint import FlexureJoint
-from tensegym.flexure.robot.stand import ARM, UPRIGHT, arm_state, pull
+from tensegym.flexible.flexible_robot import FlexibleRobot
+from tensegym.flexible.flexure_joint import FlexureJoint
+from tensegym.flexible.stand import ARM, UPRIGHT, arm_state, pull
+from tensegym.flexure.hinge.presets import PAPER_HINGES, preset
+from tensegym.flexure.models.joint import Joint, fit_joint
+from tensegym.flexure.models.potential_kernel import stiffness, wrench
 from tensegym.report import table
 
 MASS, CENTRE, INERTIA = 0.03, 0.06, 3.7e-5  # of the stand's arm: kg, m beyond the tip, kg m^2 about the centre

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tensegym.commands.design import open_search
+from tensegym.cli.design import open_search
 from tensegym.report import table
 from tensegym.search.confirm import FIRST_SEED, TIME_STEP, pick
 from tensegym.search.engine import JoblibEngine

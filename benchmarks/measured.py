@@ -28,13 +28,13 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "flexure"))
 
 from stand_pictures import ARM_MM, Picture
 
-from tensegym.flexure.errors_table import model_errors
-from tensegym.flexure.hinge import Hinge
-from tensegym.flexure.noisy_fit import fit_noisy
-from tensegym.flexure.presets import PAPER_HINGES, preset
-from tensegym.flexure.sampling import default_box, fit_states, held_out_states, moment_at
-from tensegym.flexure.states import States
-from tensegym.flexure.track import sight
+from tensegym.flexure.fem.sampling import default_box, fit_states, held_out_states, moment_at
+from tensegym.flexure.hinge.hinge import Hinge
+from tensegym.flexure.hinge.presets import PAPER_HINGES, preset
+from tensegym.flexure.hinge.states import States
+from tensegym.flexure.measured.noisy_fit import fit_noisy
+from tensegym.flexure.measured.sighting import sight
+from tensegym.flexure.models.errors_table import model_errors
 from tensegym.report import table
 
 COUNTS = (60, 150, 600)

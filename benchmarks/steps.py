@@ -15,12 +15,12 @@ from pathlib import Path
 import numpy as np
 import tyro
 
-from tensegym.commands.design import open_search
+from tensegym.cli.design import open_search
 from tensegym.control.tipping import current_face
-from tensegym.design import RobotDesign
-from tensegym.design_file import design_from_dict
+from tensegym.design.design import RobotDesign
+from tensegym.design.design_file import design_from_dict
 from tensegym.report import table
-from tensegym.robot import TensegrityRobot
+from tensegym.robot.robot import TensegrityRobot
 from tensegym.search.confirm import FIRST_SEED, TIME_STEP, pick
 from tensegym.search.engine import JoblibEngine
 from tensegym.search.evaluate import Trial, start_of, try_all

@@ -15,10 +15,10 @@ import pybullet
 from numba import njit
 from timing import OneCore, Row, in_turn, row
 
-from tensegym.cable_forces import DAMPING, LOCAL_A, LOCAL_B, STIFFNESS
-from tensegym.design import Payload, RobotDesign
-from tensegym.direct_calls import client_handle, push_and_step
-from tensegym.robot import TensegrityRobot
+from tensegym.bullet.c_interface import client_handle, push_and_step
+from tensegym.design.design import Payload, RobotDesign
+from tensegym.physics.cable_law import DAMPING, LOCAL_A, LOCAL_B, STIFFNESS
+from tensegym.robot.robot import TensegrityRobot
 
 BLOCK = 100  # substeps
 

@@ -10,10 +10,10 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from tensegym.cable_forces import DAMPING, LOCAL_A, LOCAL_B, STIFFNESS
-from tensegym.cables import cable_arrays
-from tensegym.design import RobotDesign
-from tensegym.structure import FloatArray
+from tensegym.arrays import FloatArray
+from tensegym.design.design import RobotDesign
+from tensegym.physics.cable_law import DAMPING, LOCAL_A, LOCAL_B, STIFFNESS
+from tensegym.physics.robot_arrays import cable_arrays
 
 INTEGRATORS = {"MuJoCo Euler": "Euler", "MuJoCo implicitfast": "implicitfast", "MuJoCo RK4": "RK4"}
 

@@ -31,14 +31,14 @@ from scipy.spatial.transform import Rotation
 from timing import OneCore, in_turn, machine
 from twin import INTEGRATORS, Twin
 
-from tensegym.cables import cable_arrays
-from tensegym.design import RobotDesign
+from tensegym.arrays import FloatArray
+from tensegym.design.design import RobotDesign
 from tensegym.errors import DesignError, SimulationError
-from tensegym.geometry import points_in_world
+from tensegym.physics.cable_geometry import points_in_world
+from tensegym.physics.robot_arrays import cable_arrays
+from tensegym.physics.rod_rotation import step_back
 from tensegym.report import table
-from tensegym.robot import TensegrityRobot
-from tensegym.rotation import step_back
-from tensegym.structure import FloatArray
+from tensegym.robot.robot import TensegrityRobot
 
 DESIGN = RobotDesign(spin_damping=0.0, drive=replace(RobotDesign().drive, speed_limit=1e-9))  # locked: see natural_at
 BARE = DESIGN.with_(stiff_cable=replace(DESIGN.stiff_cable, damping=0.0))  # they act on the twin's slack tendons too

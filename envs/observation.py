@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from tensegym import drives
-from tensegym.robot import SPEED_BOUND, TensegrityRobot
-from tensegym.structure import FloatArray
+from tensegym.arrays import FloatArray
+from tensegym.physics import drives
+from tensegym.robot.robot import SPEED_BOUND, TensegrityRobot
 
 from .variation import Variation
 

@@ -12,12 +12,12 @@ import numpy as np
 from gymnasium import spaces
 from gymnasium.utils import EzPickle
 
-from tensegym.design import RobotDesign
-from tensegym.design_file import as_design
+from tensegym.design.design import RobotDesign
+from tensegym.design.design_file import as_design
 from tensegym.errors import DesignError, SimulationError
-from tensegym.gait import GaitMeter
-from tensegym.picture import draw_in_window, render
-from tensegym.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityRobot
+from tensegym.robot.gait import GaitMeter
+from tensegym.robot.rendering import draw_in_window, render
+from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityRobot
 
 from . import CONTROL_PERIOD
 from .observation import NODE_REACH, OBSERVATIONS, observer

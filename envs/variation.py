@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from tensegym.design import RobotDesign
+from tensegym.arrays import FloatArray
+from tensegym.design.design import RobotDesign
 from tensegym.errors import DesignError, StructureError
-from tensegym.structure import FloatArray
 
 TRIES = 100  # draws in a row that may all be refused before there is taken to be no sound design in the ranges
 

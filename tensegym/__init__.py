@@ -6,6 +6,6 @@ matplotlib are imported only by the commands that need them.
 
 from importlib.metadata import version
 
-from . import envs as envs
+from tensegym import envs as envs
 
 __version__ = version("tensegym")

@@ -7,7 +7,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import pytest
 
-from tensegym.cli import run
+from tensegym.cli.main import run
 
 
 @pytest.fixture

@@ -97,13 +97,13 @@ def test_every_pybullet_call_names_its_client():
 
 def test_importing_brings_no_learning_and_no_plotting():
     heavy = ("torch", "stable_baselines3", "matplotlib", "moviepy", "tensorboard", "tqdm", "yaml")
-    code = f"import sys, tensegym, tensegym.cli, gymnasium; print([m for m in {heavy} if m in sys.modules])"
+    code = f"import sys, tensegym, tensegym.cli.main, gymnasium; print([m for m in {heavy} if m in sys.modules])"
     assert python(code).stdout.splitlines()[0] == "[]"
 
 
 @pytest.mark.parametrize("command", ["simulate", "validate", "step"])
 def test_commands_without_learning_load_none(command):
-    from tensegym.cli import COMMANDS
+    from tensegym.cli.main import COMMANDS
 
     module = COMMANDS[command][0].split(":")[0]
     code = f"import sys, {module}; print([m for m in ('torch', 'stable_baselines3', 'matplotlib') if m in sys.modules])"
@@ -152,7 +152,7 @@ def test_core_and_extras_are_those_of_the_plan():
     assert train >= {"stable-baselines3", "torch", "tensorboard", "tqdm", "rich", "matplotlib", "moviepy"}
     dev = {_name(r) for r in project["optional-dependencies"]["dev"]}
     assert dev >= {"pytest", "hypothesis", "ruff", "mypy"}
-    assert project["scripts"] == {"tensegym": "tensegym.cli:main"}
+    assert project["scripts"] == {"tensegym": "tensegym.cli.main:main"}
 
 
 def test_the_licence_is_mits_and_is_there():

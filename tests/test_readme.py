@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from tensegym.cli import COMMANDS
-from tensegym.design_file import load_design
+from tensegym.cli.main import COMMANDS
+from tensegym.design.design_file import load_design
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text()

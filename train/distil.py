@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 import tyro
 
+from tensegym.arrays import FloatArray, IntArray
 from tensegym.control.cpg import Cpg, CpgController, cable_ends_in_heading, drive_kinds, feedback_text, pose_terms
 from tensegym.envs.rolling import RollingEnv
-from tensegym.structure import FloatArray, IntArray
 
 from .controllers import policy_controller
 

@@ -10,9 +10,9 @@ from typing import Any
 
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
-from tensegym.picture import draw_in_window
 from tensegym.report import Report, table
-from tensegym.robot import TensegrityRobot
+from tensegym.robot.rendering import draw_in_window
+from tensegym.robot.robot import TensegrityRobot
 
 from .controllers import Controller, policy_controller
 from .trials import EPISODE_SECONDS, run_episode, run_trials, summarise

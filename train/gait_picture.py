@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from tensegym.drives import CURRENT, ROTOR_ANGLE
 from tensegym.envs.rolling import RollingEnv
-from tensegym.picture import render
+from tensegym.physics.drives import CURRENT, ROTOR_ANGLE
+from tensegym.robot.rendering import render
 
 
 class GaitRecorder:

@@ -14,7 +14,7 @@ from stable_baselines3.common.policies import ActorCriticPolicy
 from torch import nn
 
 from tensegym.envs.rolling import RollingEnv
-from tensegym.symmetry import symmetries
+from tensegym.structure.symmetry import symmetries
 
 
 def symmetry_arguments(env: RollingEnv) -> dict[str, list[list[int]]]:

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ..structure import FloatArray
+from tensegym.arrays import FloatArray
+
 from .bodies import FIXED, joint_kind, load_body
 from .engine import pybullet
 from .world import World

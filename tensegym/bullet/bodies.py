@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from importlib import resources
 from pathlib import Path
 
-from ..errors import SimulationError
-from ..structure import FloatArray
+from tensegym.arrays import FloatArray
+from tensegym.errors import SimulationError
+
 from .engine import pybullet
 
 _ROBOT_GROUP, _GROUND_GROUP = 1, 2

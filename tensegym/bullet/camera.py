@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..structure import FloatArray
+from tensegym.arrays import FloatArray
+
 from .engine import pybullet
 
 

@@ -13,13 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .. import direct_calls
-from ..errors import SimulationError
-from ..state_window import find_window
-from ..structure import FloatArray, IntArray
+from tensegym.arrays import FloatArray, IntArray
+from tensegym.errors import SimulationError
+
+from . import c_interface as direct_calls
 from .bodies import load_body, make_ground
 from .camera import Camera
 from .engine import pybullet
+from .state_buffer import find_window
 
 # Contact points of one body nearer to each other than this part of its size count as one, the last found of them: on a
 # surface of triangles that may be the one with a neighbour of the triangle a foot presses on, which then holds nothing

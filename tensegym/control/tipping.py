@@ -8,9 +8,9 @@ from itertools import combinations
 
 import numpy as np
 
-from tensegym.faces import supporting_face
-from tensegym.robot import TensegrityRobot
-from tensegym.structure import FloatArray
+from tensegym.arrays import FloatArray
+from tensegym.robot.robot import TensegrityRobot
+from tensegym.structure.faces import supporting_face
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
+from tensegym.arrays import FloatArray
+from tensegym.design.parameters import bounded, check_ranges
 from tensegym.errors import DesignError, InputError
-from tensegym.parameters import bounded, check_ranges
-from tensegym.robot import TensegrityRobot
-from tensegym.structure import FloatArray
+from tensegym.robot.robot import TensegrityRobot
 
 from .tipping import Pull, Tip, current_face, face_direction
 

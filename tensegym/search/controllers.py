@@ -24,12 +24,12 @@ from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
+from tensegym.arrays import FloatArray
 from tensegym.control.cpg import Cpg, CpgController
 from tensegym.control.tipping import Tip
 from tensegym.control.walker import Playing, WalkerController, load_table
 from tensegym.errors import DesignError
-from tensegym.robot import TensegrityRobot
-from tensegym.structure import FloatArray
+from tensegym.robot.robot import TensegrityRobot
 
 
 class Driver(Protocol):

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from tensegym.design import RobotDesign
-from tensegym.design_file import design_from_dict
+from tensegym.arrays import FloatArray
+from tensegym.design.design import RobotDesign
+from tensegym.design.design_file import design_from_dict
 from tensegym.errors import DesignError, SimulationError, StructureError
-from tensegym.gait import DriveMeter, GaitMeter
-from tensegym.robot import TensegrityRobot
-from tensegym.structure import FloatArray
+from tensegym.robot.gait import DriveMeter, GaitMeter
+from tensegym.robot.robot import TensegrityRobot
 
 from .controllers import Start, controller
 from .measure import WORST_COST, aggregate

@@ -9,7 +9,7 @@ from dataclasses import dataclass, fields
 from typing import Literal
 
 from tensegym.errors import InputError
-from tensegym.gait import GaitMetrics
+from tensegym.robot.gait import GaitMetrics
 
 METRICS = (*(f.name for f in fields(GaitMetrics)), "arrived", "drive_load", "mass")
 WORST_COST = 1e3  # what an infinite cost of transport counts as in a mean or an objective

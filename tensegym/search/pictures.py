@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from tensegym.design import RobotDesign
-from tensegym.gait import GaitMeter
-from tensegym.robot import TensegrityRobot
-from tensegym.structure import FloatArray
+from tensegym.arrays import FloatArray
+from tensegym.design.design import RobotDesign
+from tensegym.robot.gait import GaitMeter
+from tensegym.robot.robot import TensegrityRobot
 from tensegym.train.gait_picture import GaitRecorder, draw_gait
 
 from .confirm import TIME_STEP

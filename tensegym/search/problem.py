@@ -23,9 +23,9 @@ from typing import Any
 
 import tomli_w
 
-from tensegym.design_file import design_from_dict, design_to_dict
+from tensegym.design.design_file import design_from_dict, design_to_dict
+from tensegym.design.parameters import Checked, bounded, check_ranges
 from tensegym.errors import DesignError, InputError, StructureError
-from tensegym.parameters import Checked, bounded, check_ranges
 
 from .controllers import check_controller
 from .measure import Bound, Objective

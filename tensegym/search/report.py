@@ -13,9 +13,9 @@ import numpy as np
 import optuna
 import tomli_w
 
-from tensegym.design_file import design_from_dict, save_design
-from tensegym.structure import FloatArray
-from tensegym.urdf_model import urdf_files
+from tensegym.arrays import FloatArray
+from tensegym.design.design_file import design_from_dict, save_design
+from tensegym.design.urdf_writer import urdf_files
 
 from .confirm import FIRST_SEED, TIME_STEP, Confirmed, summary
 from .pictures import draw_best_gait, draw_importance, draw_pareto, draw_progress

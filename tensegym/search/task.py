@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
+from tensegym.design.parameters import bounded, check_ranges
 from tensegym.errors import DesignError, InputError
-from tensegym.parameters import bounded, check_ranges
-from tensegym.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP
-from tensegym.terrain import Terrain
+from tensegym.physics.terrain import Terrain
+from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP
 
 from .measure import Bound
 
@@ -21,7 +21,7 @@ class Task:
     random face at a random heading, towards a random direction; to step is to tip onto a neighbour of that face, drawn
     at random too, and the direction is the one across their edge. An episode without a tip in its first ``patience``
     seconds ends there, and one of stepping with the first tip. On a slope the wanted direction is uphill.
-    Rough ground is the same in all episodes, which cross it in their directions; see `tensegym.terrain`.
+    Rough ground is the same in all episodes, which cross it in their directions; see `tensegym.physics.terrain`.
     """
 
     motion: str

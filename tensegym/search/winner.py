@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tensegym.structure import FloatArray
+from tensegym.arrays import FloatArray
 
 from .asker import penalised
 from .problem import Problem

@@ -16,12 +16,12 @@ from gymnasium.utils.env_checker import check_env
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tensegym.design import ElasticCable, Payload, RobotDesign
-from tensegym.design_file import design_to_dict, save_design
+from tensegym.design.design import ElasticCable, Payload, RobotDesign
+from tensegym.design.design_file import design_to_dict, save_design
 from tensegym.envs import CONTROL_PERIOD, ROLLING
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import DesignError, SimulationError
-from tensegym.picture import tension_colour
+from tensegym.robot.rendering import tension_colour
 
 KINDS = ("full", "onboard")
 

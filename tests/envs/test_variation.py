@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from stable_baselines3.common.env_checker import check_env
 
-from tensegym.design import RobotDesign
-from tensegym.design_file import as_design, design_to_dict
+from tensegym.design.design import RobotDesign
+from tensegym.design.design_file import as_design, design_to_dict
 from tensegym.envs.rolling import RollingEnv
 from tensegym.envs.variation import Range, variation
 from tensegym.errors import DesignError

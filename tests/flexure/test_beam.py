@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tensegym.flexure import beam
+from tensegym.flexure.fem import beam
 
 SIZE = (0.01, 0.8, 0.6, 9e4, 5e-3)  # l0, direction at rest, EA, EI
 

@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from tensegym.errors import FlexureError
-from tensegym.flexure.buckling import buckling_load
-from tensegym.flexure.hinge import Hinge, Leaf, Material
-from tensegym.flexure.pin import rod_pin
-from tensegym.flexure.presets import PRESETS, leaf_spring, parallel_guide, preset
+from tensegym.flexure.fem.buckling import buckling_load
+from tensegym.flexure.hinge.hinge import Hinge, Leaf, Material
+from tensegym.flexure.hinge.presets import PRESETS, leaf_spring, parallel_guide, preset
+from tensegym.flexure.models.rod_pin import rod_pin
 
 STEEL = Material(210e9, 0.3)
 LENGTHS = st.floats(0.0, 0.5)

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tensegym.flexure import fem
-from tensegym.flexure.presets import preset
+from tensegym.flexure.fem import solve as fem
+from tensegym.flexure.hinge.presets import preset
 
 pytest.importorskip("exudyn")
 

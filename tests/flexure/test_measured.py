@@ -4,19 +4,19 @@ import json
 
 import numpy as np
 import pytest
-from conftest import assert_refused
 from stand_pictures import save, stand
 
 from tensegym.errors import FlexureError, InputError
-from tensegym.flexure import fem
-from tensegym.flexure.measured import read_measured
-from tensegym.flexure.measured_fit import fit_measured
-from tensegym.flexure.noisy_fit import fit_noisy
-from tensegym.flexure.planar_spring import PlanarSpring
-from tensegym.flexure.presets import leaf_spring, preset, x_hinge
-from tensegym.flexure.sampling import default_box, fit_states, held_out_states, moment_at
-from tensegym.flexure.states import States
-from tensegym.flexure.torsion_spring import TorsionSpring
+from tensegym.flexure.fem import solve as fem
+from tensegym.flexure.fem.sampling import default_box, fit_states, held_out_states, moment_at
+from tensegym.flexure.hinge.presets import leaf_spring, preset, x_hinge
+from tensegym.flexure.hinge.states import States
+from tensegym.flexure.measured.measured_file import read_measured
+from tensegym.flexure.measured.measured_fit import fit_measured
+from tensegym.flexure.measured.noisy_fit import fit_noisy
+from tensegym.flexure.models.planar_spring import PlanarSpring
+from tensegym.flexure.models.torsion_spring import TorsionSpring
+from tests.conftest import assert_refused
 
 LENGTH, ARM = 0.04, 0.12
 TIP_NOISE, TORQUE_NOISE = 50e-6, 0.005  # the acceptance: 0.05 mm, 0.5 % of the 30-deg moment

@@ -5,18 +5,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tensegym.cli.flexure.table import PAPER_TABLE_1
 from tensegym.errors import FlexureError
-from tensegym.flexure import fem
-from tensegym.flexure.centre_shift import crossing_shift, least_shift_crossing
-from tensegym.flexure.commands.table import PAPER_TABLE_1
-from tensegym.flexure.joint import arm_sweep, fit_joint
-from tensegym.flexure.model_choice import choose_model
-from tensegym.flexure.planar_spring import PlanarSpring, fit_planar, spring_energy, spring_poses, spring_wrench
-from tensegym.flexure.presets import PAPER_HINGES, preset
-from tensegym.flexure.pseudo_rigid import planar_placement, torsion_lambda
-from tensegym.flexure.states import States
-from tensegym.flexure.stiffness_diagram import fit_diagram, invert
-from tensegym.flexure.torsion_spring import TorsionSpring, fit_torsion
+from tensegym.flexure.fem import solve as fem
+from tensegym.flexure.fem.centre_shift import crossing_shift, least_shift_crossing
+from tensegym.flexure.hinge.presets import PAPER_HINGES, preset
+from tensegym.flexure.hinge.states import States
+from tensegym.flexure.models.joint import arm_sweep, fit_joint
+from tensegym.flexure.models.model_choice import choose_model
+from tensegym.flexure.models.planar_spring import PlanarSpring, fit_planar, spring_energy, spring_poses, spring_wrench
+from tensegym.flexure.models.pseudo_rigid import planar_placement, torsion_lambda
+from tensegym.flexure.models.stiffness_diagram import fit_diagram, invert
+from tensegym.flexure.models.torsion_spring import TorsionSpring, fit_torsion
 
 L = 0.04
 
@@ -45,7 +45,7 @@ def test_f2_as_printed_has_its_minimum_elsewhere(name, sweeps):
 
 
 def test_dx_alone_is_a_minimum(sweeps):
-    from tensegym.flexure.pseudo_rigid import spring_track
+    from tensegym.flexure.models.pseudo_rigid import spring_track
 
     place = planar_placement(sweeps["tfch"], L)
     around = [np.ptp(spring_track(sweeps["tfch"], L, place.b + d)[:, 0]) for d in np.linspace(-0.3, 0.6, 91)]
@@ -112,7 +112,7 @@ def test_inversion_is_guarded_at_rest_and_under_a_pure_moment():
     k, share = invert(states, L, 0.5)
     assert np.isnan(k).all() and share.max() < 1e-6
     with pytest.raises(FlexureError, match="singular along the whole path"):
-        from tensegym.flexure.pseudo_rigid import Placement
+        from tensegym.flexure.models.pseudo_rigid import Placement
 
         fit_diagram(states, L, Placement(0.5, 0.5, 0, 0, "dx"))
     sweep = arm_sweep(preset("leaf-spring"), 0.5)

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import assert_refused
 from stand_pictures import ARM_MM, Picture, save, stand
 
 from tensegym.errors import FlexureError
-from tensegym.flexure.track import sight
+from tensegym.flexure.measured.sighting import sight
+from tests.conftest import assert_refused
 
 pytest.importorskip("PIL")
 

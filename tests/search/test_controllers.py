@@ -5,9 +5,9 @@ import pytest
 
 from tensegym.control.tipping import Pull, Tip
 from tensegym.control.walker import Playing, WalkerController
-from tensegym.design import RobotDesign
+from tensegym.design.design import RobotDesign
 from tensegym.errors import DesignError, InputError
-from tensegym.robot import TensegrityRobot
+from tensegym.robot.robot import TensegrityRobot
 from tensegym.search.controllers import check_controller, controller
 from tensegym.search.evaluate import run_trial, try_all
 from tensegym.search.loop import _trial

@@ -37,7 +37,7 @@ def test_run_status_resume_report(cli, tiny_file, tmp_path):
 
 def test_a_killed_search_loses_only_what_was_in_flight(tiny_file, tmp_path):
     out = tmp_path / "study"
-    start = [sys.executable, "-c", "from tensegym.cli import main; main()", "design"]
+    start = [sys.executable, "-c", "from tensegym.cli.main import main; main()", "design"]
     run = subprocess.Popen([*start, "run", "--task", str(tiny_file), "--budget", "500", "--out", str(out)],
                            stderr=subprocess.DEVNULL, env=os.environ | {"PYTHONUNBUFFERED": "1"})  # fmt: skip
     try:

@@ -6,12 +6,12 @@ import pytest
 
 import tensegym.search.evaluate as module
 from tensegym.control.cpg import Cpg, CpgController, drive_kinds, fitted_feedback
-from tensegym.design import RobotDesign
+from tensegym.design.design import RobotDesign
 from tensegym.errors import DesignError
-from tensegym.gait import GaitMeter
-from tensegym.robot import TensegrityRobot
+from tensegym.robot.gait import GaitMeter
+from tensegym.robot.robot import TensegrityRobot
 from tensegym.search.evaluate import Trial, evaluate, run_trial, try_all
-from tensegym.symmetry import symmetries
+from tensegym.structure.symmetry import symmetries
 
 
 @pytest.fixture
@@ -48,7 +48,7 @@ def test_a_refused_design_costs_no_simulation(trial, monkeypatch):
 
 
 def test_a_gait_that_breaks_the_audit_goes_nowhere(trial, monkeypatch):
-    from tensegym import gait
+    from tensegym.robot import gait
 
     monkeypatch.setattr(gait, "AUDIT_TOLERANCE", -1.0)  # below what any gait keeps
     metrics = run_trial(trial).metrics

@@ -3,7 +3,7 @@
 import pytest
 import yaml
 
-from tensegym.cli import run
+from tensegym.cli.main import run
 
 TINY = {
     "env": {"observation": "onboard", "settle": 0.1},

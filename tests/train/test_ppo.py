@@ -81,7 +81,7 @@ def test_weights_and_statistics_move_with_every_chunk(tiny_run):
 
 def test_a_run_killed_in_its_second_chunk_and_resumed_equals_one_that_was_not(tiny_run, tiny_config, tmp_path, cli):
     out = tmp_path / "killed"
-    code = "from tensegym.cli import main; main()"
+    code = "from tensegym.cli.main import main; main()"
     arguments = ["train", "--config", str(tiny_config), "--out", str(out), "--seed", "7"]
     process = subprocess.Popen(
         [sys.executable, "-c", code, *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,

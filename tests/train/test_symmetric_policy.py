@@ -5,10 +5,10 @@ import pytest
 import torch
 from scipy.spatial.transform import Rotation
 
-from tensegym.design import Payload, RobotDesign
+from tensegym.design.design import Payload, RobotDesign
 from tensegym.envs.rolling import RollingEnv
-from tensegym.robot import TensegrityRobot
-from tensegym.symmetry import symmetries
+from tensegym.robot.robot import TensegrityRobot
+from tensegym.structure.symmetry import symmetries
 from tensegym.train.symmetric_policy import SymmetricPolicy, symmetry_arguments
 
 GROUP = symmetries(RobotDesign())

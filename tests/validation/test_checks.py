@@ -5,9 +5,11 @@ from functools import partial
 import numpy as np
 import pytest
 
-from tensegym import checks, drives, kernel
-from tensegym.checks import ALL, Check
-from tensegym.robot import TensegrityRobot
+from tensegym.physics import drives
+from tensegym.physics import substep as kernel
+from tensegym.robot.robot import TensegrityRobot
+from tensegym.validation import checks
+from tensegym.validation.checks import ALL, Check
 
 WANTED = {*(f"S{n}" for n in range(1, 8)), "M1", "M2", "M3", "G1", "G2", "G3", "I1", "drive"}
 

@@ -1,0 +1,166 @@
+"""`tensegym design run`, `resume` and `status`: search for a design and a gait with which a motion can be made."""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import dataclass
+from datetime import timedelta
+from pathlib import Path
+from typing import Any
+
+from tensegym.errors import InputError
+from tensegym.report import Report, table
+from tensegym.search.engine import check_engine, engine
+from tensegym.search.evaluate import Outcome
+from tensegym.search.loop import run_search
+from tensegym.search.problem import Problem, load_problem, problem_from
+from tensegym.search.store import Finished, Store
+from tensegym.search.winner import best_number
+
+COMMANDS: dict[str, tuple[str, str]] = {
+    "run": ("tensegym.cli.design:Run", "search for a design that makes a motion"),
+    "resume": ("tensegym.cli.design:Resume", "go on with a search that was stopped or killed, or further"),
+    "status": ("tensegym.cli.design:Status", "how far a search is, while it runs or after"),
+    "report": ("tensegym.cli.design_report:DesignReport", "report.md, figures, the best design's URDF and TOML"),
+}
+
+
+@dataclass(frozen=True)
+class _Search:
+    jobs: int = 1
+    """Processes, or workers of a Ray cluster started here."""
+    engine: str = "joblib"
+    """Where trials run: joblib, ray."""
+    address: str | None = None
+    """Address of a running Ray cluster."""
+    storage: str | None = None
+    """Database URL; default: study.db in the folder."""
+
+    def _check(self) -> None:
+        if self.jobs < 1:
+            raise InputError(f"jobs = {self.jobs} must be 1 or more")
+        check_engine(self.engine, self.address)
+
+    def _go(self, problem: Problem, store: Store, budget: int, out: Path) -> Report:
+        from tqdm import tqdm
+
+        store.note("budget", budget)
+        done = store.finished()
+        with (
+            engine(self.engine, self.jobs, self.address) as pool,
+            tqdm(total=budget, initial=len(done), unit="trial", file=sys.stderr, smoothing=0.05) as bar,
+        ):
+            best = max((_score(problem, o) for _, o in done.values()), default=float("-inf"))
+
+            def progress(outcome: Outcome) -> None:
+                nonlocal best
+                best = max(best, _score(problem, outcome))
+                if math.isfinite(best):
+                    bar.set_postfix_str(f"{problem.settings.objectives[0]}: {abs(best):.4g}", refresh=False)
+                bar.update()
+
+            run_search(problem, store, pool, budget, progress)
+        return _status(problem, store, out)
+
+
+@dataclass(frozen=True)
+class Run(_Search):
+    """Search for a design and a controller with which a task's goal is reached. A killed search goes on with resume."""
+
+    task: str = "carry"
+    """A task file by path, or a shipped one by name."""
+    budget: int = 400
+    """Trials in all."""
+    seed: int | None = None
+    """Seed of the search in place of the task file's."""
+    sampler: str | None = None
+    """Sampler in place of the task file's: cmaes, tpe, nsga2, random."""
+    out: Path = Path("design")
+    """Folder for the study; must not hold another one."""
+
+    def run(self) -> Report:
+        self._check()
+        if self.budget < 1:
+            raise InputError(f"budget = {self.budget} must be 1 or more")
+        if self.out.exists() and not self.out.is_dir():
+            raise InputError(f"--out {self.out} is a file; give a folder")
+        problem = load_problem(self.task).with_settings(seed=self.seed, sampler=self.sampler)
+        made = not self.out.exists()
+        self.out.mkdir(parents=True, exist_ok=True)
+        try:
+            store = Store(self.out, problem, self.storage)
+        except InputError:
+            if made:
+                self.out.rmdir()
+            raise
+        (self.out / "storage.txt").write_text(self.storage or "")
+        return self._go(problem, store, self.budget, self.out)
+
+
+@dataclass(frozen=True)
+class Resume(_Search):
+    """Go on with the search in a folder: what is finished is not run again, what was in flight is."""
+
+    folder: Path = Path("design")
+    """Folder of the search."""
+    budget: int | None = None
+    """Trials in all; default: as before."""
+
+    def run(self) -> Report:
+        self._check()
+        problem, store = open_search(self.folder, self.storage)
+        return self._go(problem, store, self.budget or store.noted("budget"), self.folder)
+
+
+@dataclass(frozen=True)
+class Status:
+    """How far a search is: trials, best so far, rate and time left."""
+
+    folder: Path = Path("design")
+    """Folder of the search."""
+    storage: str | None = None
+    """Database URL; default: the one it was started with."""
+
+    def run(self) -> Report:
+        problem, store = open_search(self.folder, self.storage)
+        return _status(problem, store, self.folder)
+
+
+def open_search(folder: Path, storage: str | None = None) -> tuple[Problem, Store]:
+    """The problem and the store of a search's folder. Raises InputError or FileNotFoundError."""
+    note = folder / "storage.txt"
+    if not note.is_file():
+        raise FileNotFoundError(f"no search in {folder}; start one with `tensegym design run --out {folder}`")
+    store = Store(folder, None, storage or note.read_text() or None)
+    return problem_from(store.problem_text, str(folder)), store
+
+
+def _score(problem: Problem, outcome: Outcome) -> float:
+    objective = problem.settings.objectives[0]
+    if outcome.refused is not None or max(problem.losses(outcome.metrics)) > 0:
+        return float("-inf")
+    return outcome.metrics[objective.metric] * (1 if objective.maximise else -1)
+
+
+def _status(problem: Problem, store: Store, folder: Path) -> Report:
+    finished: Finished = store.finished()
+    budget = store.noted("budget")
+    data: dict[str, Any] = {
+        "folder": str(folder), "trials": len(finished), "budget": budget,
+        "refused": sum(o.refused is not None for _, o in finished.values()),
+        "stopped_early": sum(o.stopped for _, o in finished.values()),
+        **store.pace(budget),
+    }  # fmt: skip
+    number = best_number(problem, finished)
+    objectives = problem.settings.objectives
+    if number is not None:
+        metrics = finished[number][1].metrics
+        data |= {"best_trial": number} | {f"best_{o.metric}": metrics[o.metric] for o in objectives}
+    left = data["seconds_left"]
+    rows = [[data["folder"], f"{data['trials']} of {budget}", data["refused"], data["stopped_early"],
+             "-" if left is None else str(timedelta(seconds=round(left))),
+             "-" if number is None else number,
+             *("-" if number is None else data[f"best_{o.metric}"] for o in objectives)]]  # fmt: skip
+    header = ["folder", "trials", "refused", "stopped early", "time left", "best trial", *map(str, objectives)]
+    return Report(table(header, rows), data)

@@ -1,0 +1,89 @@
+"""`tensegym flexure curves`: pictures and one CSV of what hinges and their models do."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tensegym.errors import InputError
+from tensegym.files import replace_file
+from tensegym.flexure import figures as pictures
+from tensegym.flexure.fem.sampling import held_out_states
+from tensegym.flexure.hinge.hinge import Hinge
+from tensegym.flexure.hinge.presets import PAPER_HINGES
+from tensegym.flexure.hinge.states import States
+from tensegym.flexure.measured.measured_file import read_measured
+from tensegym.flexure.models.joint import Joint, arm_sweep, fit_joint
+from tensegym.report import Report, table
+
+from .hinge_options import BoxOptions, HingeOptions
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Draw torque against angle by FEM, every model and measured points, the axis drift, and the stiffness diagrams."""
+
+    out: Path
+    """Folder for hinges.png, torque.png, drift.png, stiffness.png, errors.png and curves.csv; made if missing."""
+    hinges: tuple[str, ...] = PAPER_HINGES
+    """Presets or TOML files."""
+    data: tuple[str, ...] = ()
+    """Measured points, each as HINGE=FILE.csv, with the columns that `fit --data` reads."""
+    options: HingeOptions = field(default_factory=HingeOptions)
+    box: BoxOptions = field(default_factory=BoxOptions)
+
+    def run(self) -> Report:
+        if not self.out.parent.is_dir():
+            raise FileNotFoundError(f"no folder {self.out.parent} to make {self.out.name} in")
+        angle, force = self.box.max_angle, self.box.max_force_N
+        hinges = {name: self.options.apply(name) for name in self.hinges}
+        measured = self._measured(hinges)
+        joints = {name: fit_joint(h, max_angle=angle, max_force=force) for name, h in hinges.items()}
+        tests = {name: held_out_states(joint.hinge, joint.box) for name, joint in joints.items() if joint.hinge}
+        self.out.mkdir(exist_ok=True)
+        pictures.hinges_picture([joint.hinge for joint in joints.values() if joint.hinge], self.out / "hinges.png")
+        pictures.torque_picture(joints, self.out / "torque.png", measured)
+        pictures.drift_picture(joints, self.out / "drift.png")
+        made = ["hinges.png", "torque.png", "drift.png", "errors.png", "curves.csv"]
+        if any("paper" in joint.models for joint in joints.values()):
+            pictures.stiffness_picture(joints, self.out / "stiffness.png")
+            made.append("stiffness.png")
+        pictures.errors_picture(joints, tests, self.out / "errors.png")
+        count = write_curves(joints, self.out / "curves.csv")
+        text = "\n".join(joint.source for joint in joints.values())
+        text += "\n" + table(["file"], [[str(self.out / name)] for name in made])
+        data: dict[str, Any] = {"files": [str(self.out / name) for name in made], "rows": count,
+                                "sources": {name: joint.source for name, joint in joints.items()}}  # fmt: skip
+        return Report(text, data)
+
+    def _measured(self, hinges: dict[str, Hinge]) -> dict[str, States]:
+        out = {}
+        for item in self.data:
+            name, _, file = item.partition("=")
+            if not file or name not in self.hinges:
+                raise InputError(f"data {item!r}; give HINGE=FILE.csv with a hinge among {', '.join(self.hinges)}")
+            out[name] = read_measured(Path(file), hinges[name].arm)
+        return out
+
+
+def write_curves(joints: dict[str, Joint], path: Path) -> int:
+    """The arm's sweep of every hinge, FEM and models, one row an angle; returns the rows."""
+    rows = []
+    for name, joint in joints.items():
+        assert joint.hinge is not None
+        sweep = arm_sweep(joint.hinge, joint.box.max_angle)
+        sweep = sweep.pick(np.abs(sweep.force).max(axis=1) <= joint.box.max_force)
+        answers = {key: model.poses(sweep.theta, sweep.force) for key, model in joint.models.items()}
+        for key, states in {"fem": sweep, **answers}.items():
+            for i in range(len(states)):
+                values = [np.degrees(states.theta[i]), *(1e3 * states.tip[i]), *states.force[i], 1e3 * states.moment[i]]
+                rows.append([name, key, *(f"{v:.10g}" if np.isfinite(v) else "" for v in values)])
+    with replace_file(path) as file:
+        writer = csv.writer(file)
+        writer.writerow(["hinge", "model", "theta_deg", "x_mm", "y_mm", "Fx_N", "Fy_N", "Mz_Nmm"])
+        writer.writerows(rows)
+    return len(rows)

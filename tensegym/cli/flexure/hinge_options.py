@@ -1,0 +1,73 @@
+"""The options that say which hinge: shared by the commands."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from tensegym.errors import InputError
+from tensegym.flexure.hinge.hinge import Hinge
+from tensegym.flexure.hinge.hinge_file import as_hinge
+from tensegym.flexure.hinge.presets import MM, PRESETS, preset
+
+_LENGTHS = ("length", "height", "width", "thickness", "rib", "arm")
+
+
+@dataclass(frozen=True)
+class HingeOptions:
+    """Dimensions and material in place of a preset's or a file's own."""
+
+    length_mm: float | None = None
+    """Presets: distance of the tip from the base at rest, L."""
+    height_mm: float | None = None
+    """Presets: height H of the leaves' span."""
+    width_mm: float | None = None
+    """Presets: width W out of plane."""
+    thickness_mm: float | None = None
+    """Presets: thickness t of every leaf."""
+    rib_mm: float | None = None
+    """trls2: extent of a rib along the leaf."""
+    crossing: float | None = None
+    """cross-spring: fraction of the leaves' length at which they cross."""
+    arm_mm: float | None = None
+    """Presets: lever of the stand beyond the tip."""
+    youngs_modulus_GPa: float | None = None
+    """E of the material."""
+    poisson_ratio: float | None = None
+    """nu of the material; only the plate modulus uses it."""
+    modulus: str | None = None
+    """beam: E; plate: E/(1-nu^2); factor: --factor times E."""
+    factor: float | None = None
+    """The user's factor on E, with --modulus factor."""
+
+    def apply(self, name: str) -> Hinge:
+        """The hinge ``name`` (a preset or a TOML file) with these options. Raises FlexureError or InputError."""
+        given = {k: getattr(self, f"{k}_mm") for k in _LENGTHS if getattr(self, f"{k}_mm") is not None}
+        dimensions = {k: MM * v for k, v in given.items()}
+        if self.crossing is not None:
+            dimensions["crossing"] = self.crossing
+        if dimensions and name not in PRESETS and name.endswith(".toml"):
+            raise InputError(f"{', '.join(dimensions)}: dimensions are for presets; change them in {name}")
+        hinge = preset(name, **dimensions) if dimensions else as_hinge(name)
+        changes: dict[str, float | str] = {}
+        if self.youngs_modulus_GPa is not None:
+            changes["youngs_modulus"] = 1e9 * self.youngs_modulus_GPa
+        for key in ("poisson_ratio", "modulus", "factor"):
+            if getattr(self, key) is not None:
+                changes[key] = getattr(self, key)
+        return hinge.with_material(replace(hinge.material, **changes))  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
+class BoxOptions:
+    """Where the models are fitted."""
+
+    max_angle_deg: float | None = None
+    """Largest rotation; default: the hinge's own (30)."""
+    max_force_N: float | None = None
+    """Largest force at the tip on each base axis; default: the pure moment at the largest rotation over L."""
+
+    @property
+    def max_angle(self) -> float | None:
+        """[rad], or None."""
+        return None if self.max_angle_deg is None else math.radians(self.max_angle_deg)

@@ -1,0 +1,112 @@
+"""`tensegym flexure solve`: loads in, poses out."""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from tensegym.errors import InputError
+from tensegym.files import replace_file
+from tensegym.flexure.hinge.hinge import Hinge
+from tensegym.flexure.hinge.states import FloatArray
+from tensegym.flexure.models.joint import MODELS, fit_joint
+from tensegym.flexure.models.joint_file import load_joint
+from tensegym.flexure.models.load_solver import Answer, solve_fem, solve_model
+from tensegym.report import Report, table
+
+from .hinge_options import BoxOptions, HingeOptions
+
+LOADS = ("Fx_N", "Fy_N", "Mz_Nmm")
+POSES = ("theta_rad", "x_mm", "y_mm", "strain_energy_Nmm", "status")
+
+
+@dataclass(frozen=True)
+class Solve:
+    """Where the tip goes under dead loads: one row out for each row in, a failed row marked with its reason."""
+
+    loads: Path
+    """CSV with the columns Fx_N, Fy_N, Mz_Nmm: dead force at the tip in base axes, moment about the tip."""
+    out: Path
+    """CSV to write: the loads, theta_rad, x_mm, y_mm of the tip, strain_energy_Nmm, status (ok or the reason)."""
+    hinge: str | None = None
+    """A preset or a TOML file; models other than fem are fitted on the spot."""
+    joint: Path | None = None
+    """A file of `tensegym flexure fit`, in place of --hinge."""
+    model: str = "fem"
+    """fem, potential, planar (constant k), paper (stiffness diagrams) or torsion (1-DoF)."""
+    options: HingeOptions = field(default_factory=HingeOptions)
+    box: BoxOptions = field(default_factory=BoxOptions)
+    elements: int = 16
+    """Beam elements a leaf of length L."""
+
+    def run(self) -> Report:
+        if self.model not in ("fem", *MODELS):
+            raise InputError(f"model = {self.model!r}; one of fem, {', '.join(MODELS)}")
+        if (self.hinge is None) == (self.joint is None):
+            raise InputError("give one of --hinge and --joint")
+        if not self.out.parent.is_dir():
+            raise FileNotFoundError(f"no folder {self.out.parent} to write {self.out.name} in")
+        loads = read_loads(self.loads)
+        answers, source = self._answers(loads)
+        with replace_file(self.out) as file:
+            writer = csv.writer(file)
+            writer.writerow([*LOADS, *POSES])
+            for load, answer in zip(loads, answers, strict=True):
+                values = [*load[:2], 1e3 * load[2], answer.theta, 1e3 * answer.x, 1e3 * answer.y, 1e3 * answer.energy]
+                writer.writerow([*(f"{v:.12g}" if math.isfinite(v) else "" for v in values), answer.reason or "ok"])
+        failed = [(i, a.reason) for i, a in enumerate(answers, start=1) if a.reason]
+        rows = [[str(self.out), self.model, len(answers), len(failed)]]
+        text = source + "\n" + table(["out", "model", "rows", "failed"], rows)
+        text += "".join(f"\nrow {i}: {reason}" for i, reason in failed[:10])
+        data = {"out": str(self.out), "source": source, "model": self.model, "rows": len(answers),
+                "failed": [{"row": i, "reason": reason} for i, reason in failed]}  # fmt: skip
+        return Report(text, data, passed=not failed)
+
+    def _answers(self, loads: FloatArray) -> tuple[list[Answer], str]:
+        if self.joint is not None:
+            joint = load_joint(self.joint)
+            if self.model != "fem":
+                return solve_model(joint.model(self.model), joint.box, loads), joint.source
+            if joint.hinge is None:
+                raise InputError(f"{self.joint} was fitted to data and holds no hinge: the model fem needs one")
+            return solve_fem(joint.hinge, loads, self.elements), joint.source
+        assert self.hinge is not None
+        hinge: Hinge = self.options.apply(self.hinge)
+        if self.model == "fem":
+            return solve_fem(hinge, loads, self.elements), hinge.describe()
+        joint = fit_joint(hinge, max_angle=self.box.max_angle, max_force=self.box.max_force_N, held_out=0,
+                          elements=self.elements)  # fmt: skip
+        return solve_model(joint.model(self.model), joint.box, loads), joint.source
+
+
+def read_loads(path: Path) -> FloatArray:
+    """(n, 3) force x, y [N] and moment [N m]. Raises FileNotFoundError, or InputError naming the line."""
+    if not path.is_file():
+        raise FileNotFoundError(f"no loads file {path}")
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{path} is no CSV: {error}") from error
+    header = [name.strip() for name in rows[0]] if rows else []
+    for name in LOADS:
+        if name not in header:
+            raise InputError(f"{path}: no column {name}; the header must name {', '.join(LOADS)}, units included")
+    columns = [header.index(name) for name in LOADS]
+    values = np.empty((len(rows) - 1, 3))
+    for i, row in enumerate(rows[1:]):
+        for j, column in enumerate(columns):
+            cell = row[column] if column < len(row) else ""
+            try:
+                values[i, j] = float(cell)
+            except ValueError:
+                values[i, j] = np.nan
+            if not math.isfinite(values[i, j]):
+                raise InputError(f"{path}, row {i + 1}: {LOADS[j]} = {cell!r} is no finite number")
+    if not len(values):
+        raise InputError(f"{path}: no loads below the header")
+    return values * [1, 1, 1e-3]

@@ -1,0 +1,92 @@
+"""`tensegym COMMAND`: parses one command, runs it, prints its table or its JSON object.
+
+A command is a dataclass (its fields are the options) with ``run() -> Report``. Only the module of the chosen
+command is imported, so `tensegym --help` stays fast and `tensegym simulate` never imports torch.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import sys
+from typing import Any
+
+from tensegym.errors import TensegymError
+from tensegym.report import Report
+
+COMMANDS: dict[str, tuple[str, str]] = {
+    # name: ("module:Class" or "module:COMMANDS" for a group, one line of help)
+    "roll": ("tensegym.train.evaluate:Roll", "watch the shipped policy roll: table, metrics.json, gait.png, roll.mp4"),
+    "step": ("tensegym.cli.step:Step", "tip from one face onto the next; --all-faces: which pull tips which face"),
+    "simulate": ("tensegym.cli.simulate:Simulate", "drive-angle commands in, the whole motion out, as CSV"),
+    "modes": ("tensegym.cli.modes:Modes", "free modes of a design, and the loads of its rods"),
+    "validate": ("tensegym.cli.validate:Validate", "physics against closed forms: expected, measured, tolerance"),
+    "train": ("tensegym.train.ppo:Train", "train a rolling policy with PPO; resumable"),
+    "evaluate": ("tensegym.train.evaluate:Evaluate", "judge a policy and the baselines over many seeds"),
+    "design": ("tensegym.cli.design:COMMANDS", "search for a design that makes a motion: run, resume, status"),
+    "bench": ("tensegym.cli.bench:Bench", "measured ratios: substep, environment, start-up, beside their peers"),
+    "flexure": ("tensegym.cli.flexure:COMMANDS", "flexible joints: table, curves, fit, track, solve"),
+}
+EXTRAS = {"optuna": "search", "joblib": "search", "cmaes": "search", "sqlalchemy": "search", "ray": "cluster"}
+
+
+def usage(commands: dict[str, tuple[str, str]], program: str) -> str:
+    width = max(map(len, commands), default=0)
+    rows = [f"  {name:<{width}}  {text}" for name, (_, text) in commands.items()]
+    tail = f"`{program} COMMAND --help` lists its options; every command takes --json."
+    return "\n".join([f"usage: {program} COMMAND [options]", "", "commands:", *rows, "", tail])
+
+
+def _load(target: str) -> Any:
+    module, name = target.split(":")
+    return getattr(importlib.import_module(module), name)
+
+
+def run(argv: list[str], commands: dict[str, tuple[str, str]] = COMMANDS, program: str = "tensegym") -> int:
+    """Run one command line; returns the exit status (0 fine, 1 a check failed, 2 bad input)."""
+    if not argv or argv[0] in ("-h", "--help"):
+        print(usage(commands, program))
+        return 0 if argv else 2
+    if argv[0] == "--version":
+        from tensegym import __version__
+
+        print(__version__)
+        return 0
+    name, rest = argv[0], argv[1:]
+    if name not in commands:
+        print(f"{program}: error: unknown command {name!r}; one of: {', '.join(commands)}", file=sys.stderr)
+        return 2
+    try:
+        target = _load(commands[name][0])
+        if isinstance(target, dict):
+            return run(rest, target, f"{program} {name}")
+
+        import tyro
+
+        as_json = "--json" in rest
+        command = tyro.cli(target, args=[a for a in rest if a != "--json"], prog=f"{program} {name} [--json]",
+                           config=(tyro.conf.OmitArgPrefixes,))
+        report: Report = command.run()
+    except ModuleNotFoundError as error:
+        if str(error.name).startswith("tensegym"):
+            raise
+        extra = EXTRAS.get(str(error.name), "train")
+        print(f"{program} {name}: error: {error.name} is not installed; install tensegym[{extra}]", file=sys.stderr)
+        return 2
+    except BrokenPipeError:
+        raise
+    except (TensegymError, OSError, UnicodeDecodeError) as error:
+        print(f"{program} {name}: error: {' '.join(str(error).split())}", file=sys.stderr)
+        return 2
+    print(json.dumps(report.data, allow_nan=False) if as_json else report.text)
+    return 0 if report.passed else 1
+
+
+def main() -> None:
+    try:
+        status = run(sys.argv[1:])
+    except KeyboardInterrupt:
+        status = 130
+    except BrokenPipeError:
+        status = 0
+    sys.exit(status)

@@ -1,0 +1,163 @@
+"""`tensegym simulate`: drive-angle commands against time in, the whole motion out, as CSV with units."""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from tensegym.arrays import FloatArray
+from tensegym.design.design_file import as_design
+from tensegym.errors import InputError
+from tensegym.files import replace_file
+from tensegym.physics import drives
+from tensegym.report import Report, table
+from tensegym.robot.gait import GaitMeter
+from tensegym.robot.robot import LARGEST_TIME_STEP, TensegrityRobot
+from tensegym.robot.start_poses import start_at
+
+
+@dataclass(frozen=True)
+class Simulate:
+    """Simulate a robot under commanded drive angles and write everything it did as CSV."""
+
+    commands: Path
+    """CSV: time_s, then drive_1_rad to drive_6_rad, the commanded spool angles; even time steps, linear in between."""
+    out: Path
+    """CSV to write: nodes, rod quaternions, tensions, drives, energies."""
+    design: str = "six_rod"
+    """A preset (six_rod, six_rod_flexible, paper) or a TOML file."""
+    start: str = ""
+    """Start pose: a face by its nodes such as 3-5-12, paper-1 or paper-2; default: the first face."""
+    heading: float = 0.0
+    """Turn about the vertical [rad]."""
+    ground: bool = True
+    """--no-ground: free flight without gravity."""
+    dt: float = 1e-3
+    """Physics time step [s]."""
+    sample: float = 0.01
+    """Time between rows of the output [s]."""
+
+    def run(self) -> Report:
+        design = as_design(self.design)
+        if not self.out.parent.is_dir():
+            raise FileNotFoundError(f"no folder {self.out.parent} to write {self.out.name} in")
+        if self.out.is_dir():
+            raise InputError(f"--out {self.out} is a folder; give a file")
+        times, angles = read_commands(self.commands, len(design.structure.stiff_cables))
+        for name, value, high in (("dt", self.dt, LARGEST_TIME_STEP), ("sample", self.sample, 10.0)):
+            if not 1e-6 <= value <= high:
+                raise InputError(f"{name} = {value!r} is outside [1e-06, {high:g}] s")
+        every = round(self.sample / self.dt)
+        if every < 1 or not math.isclose(every * self.dt, self.sample, rel_tol=1e-6):
+            raise InputError(f"sample = {self.sample:g} s must be a whole number of steps of dt = {self.dt:g} s")
+        with TensegrityRobot(design, dt=self.dt, ground=self.ground) as robot:
+            limit = robot.command_limit
+            over = np.argwhere((angles > limit * (1 + 1e-9)) | (angles < 0))
+            if len(over):
+                row, drive = over[0]
+                raise InputError(
+                    f"{self.commands}: drive_{drive + 1}_rad = {angles[row, drive]:g} at {times[row]:g} s is outside "
+                    f"[0, {limit[drive]:.4g}] rad"
+                )
+            start_at(robot, self.start or robot.faces.names()[0], self.heading)
+            meter = GaitMeter(robot, np.array([1.0, 0.0]))
+            rows = [_row(robot)]
+            for tick in range(round((times[-1] - times[0]) / self.sample)):
+                for sub in range(every):
+                    now = times[0] + (tick * every + sub) * self.dt
+                    robot.command(np.array([np.interp(now, times, a) for a in angles.T]))
+                    robot.step()
+                meter.update()
+                rows.append(_row(robot))
+            header = _header(robot)
+            gait = meter.metrics()
+        with replace_file(self.out) as file:
+            writer = csv.writer(file)
+            writer.writerow(header)
+            writer.writerows([[f"{v:.9g}" for v in row] for row in rows])
+        data = {"out": str(self.out), "rows": len(rows), "columns": len(header), **gait.as_dict()}
+        text = table(["out", "rows", "columns", "path m", "tips", "slip share", "energy J", "audit excess"],
+                     [[str(self.out), len(rows), len(header), gait.path, gait.tips, gait.slip_share, gait.energy,
+                       gait.audit_excess]])  # fmt: skip
+        return Report(text, data)
+
+
+def read_commands(path: Path, count: int) -> tuple[FloatArray, FloatArray]:
+    """Times (t,) [s] and commanded spool angles (t, count) [rad].
+
+    Raises FileNotFoundError, or InputError naming the line: a gap, a value that is no finite number, wrong columns.
+    """
+    if not path.is_file():
+        raise FileNotFoundError(f"no command file {path}")
+    try:
+        with path.open(newline="") as file:
+            reader = csv.reader(file)
+            lines = [(reader.line_num, row) for row in reader if row]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{path} is not CSV: {error}") from error
+    wanted = ["time_s", *(f"drive_{i + 1}_rad" for i in range(count))]
+    if not lines or [name.strip() for name in lines[0][1]] != wanted:
+        found = ", ".join(lines[0][1]) if lines else "nothing"
+        raise InputError(f"{path}: the header must be {', '.join(wanted)}; found {found}")
+    values = []
+    for number, row in lines[1:]:
+        if len(row) != len(wanted):
+            raise InputError(f"{path}, line {number}: {len(row)} values where the header has {len(wanted)}")
+        for name, cell in zip(wanted, row, strict=True):
+            try:
+                good = math.isfinite(float(cell))
+            except ValueError:
+                good = False
+            if not good:
+                raise InputError(f"{path}, line {number}: {name} = {cell!r} is no finite number; fill the gap")
+        values.append([float(cell) for cell in row])
+    array = np.array(values)
+    if len(array) < 2:
+        raise InputError(f"{path}: {len(array)} rows of commands; give two or more")
+    steps = np.diff(array[:, 0])
+    if (steps <= 0).any():
+        line = lines[int(np.argmax(steps <= 0)) + 2][0]
+        raise InputError(f"{path}, line {line}: time_s must grow from row to row")
+    typical = float(np.median(steps))
+    odd = np.abs(steps - typical) > 0.01 * typical
+    if odd.any():
+        first = int(np.argmax(odd))
+        line = lines[first + 2][0]
+        raise InputError(
+            f"{path}, line {line}: a step of {steps[first]:g} s where the others are {typical:g} s; "
+            "give commands at even times, without a gap"
+        )
+    return array[:, 0], array[:, 1:]
+
+
+def _header(robot: TensegrityRobot) -> list[str]:
+    structure = robot.design.standing
+    names = ["time_s"]
+    names += [f"node_{n + 1}_{axis}_m" for n in range(len(structure.nodes)) for axis in "xyz"]
+    names += [f"rod_{r + 1}_q{axis}" for r in range(len(structure.rods)) for axis in "xyzw"]
+    names += [f"tension_{a + 1}_{b + 1}_N" for a, b in structure.cables.tolist()]
+    names += [f"stiff_tension_{a + 1}_{b + 1}_N" for a, b in structure.stiff_cables.tolist()]
+    if robot.design.payload:
+        names += [f"payload_tension_{r + 1}_N" for r in range(len(structure.rods))]
+    names += [f"flexure_{r + 1}_{what}" for what in ("rad", "Nm") for r in robot.design.flexible_rods.tolist()]
+    for d in range(len(robot.drives)):
+        names += [f"drive_{d + 1}_{what}" for what in
+                  ("command_rad", "angle_rad", "current_A", "load_torque_Nm", "cable_length_m")]  # fmt: skip
+    return [*names, "kinetic_J", "gravity_J", "elastic_J", "drive_work_J", "electrical_energy_J"]
+
+
+def _row(robot: TensegrityRobot) -> list[float]:
+    state, first = robot.drives, robot.cables.first_driven
+    values = [robot.time, *robot.node_positions_in_world().ravel()]
+    values += robot.poses_in_world[: len(robot.design.standing.rods), 3:].ravel().tolist()
+    values += [*robot.tensions.tolist(), *robot.flexure_angles.tolist(), *robot.flexure_moments.tolist()]
+    for d, row in enumerate(state):
+        values += [row[drives.COMMAND], row[drives.ROTOR_ANGLE] / robot.design.drive.gear_ratio, row[drives.CURRENT],
+                   row[drives.LOAD_TORQUE], robot.natural_lengths[first + d]]  # fmt: skip
+    energies, account = robot.energies(), robot.account()
+    values += [energies.kinetic, energies.gravity, energies.elastic, account.drive_work, account.electrical_energy]
+    return values

@@ -1,0 +1,188 @@
+"""`tensegym step`: one step of the robot, from face to face, as a storyboard and a figure of its drives."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tensegym.control.tipping import Pull, Tip, run_pull, subsets, tip_from, tip_table
+from tensegym.control.walker import save_table
+from tensegym.design.design_file import as_design
+from tensegym.errors import InputError, SimulationError
+from tensegym.physics import drives as drive_kernel
+from tensegym.report import Report, table
+from tensegym.robot.rendering import render
+from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityRobot
+from tensegym.structure.faces import face_by_nodes
+
+FRAMES = 6
+PERIOD = 0.02  # s between two rows of the record
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step: the drives pull and release, the robot tips onto the next face.
+
+    Writes storyboard.png and drives.png.
+    """
+
+    face: str = ""
+    """Face to start on, by its nodes, such as 3-5-12; default: the first one that the drives tip."""
+    drives: tuple[int, ...] = ()
+    """Drives that pull, counted from 1; default: the first choice of one to three that tips."""
+    depth: float = 0.3
+    """Part of the stiff cables' rest length that is wound in."""
+    all_faces: bool = False
+    """Instead: try every choice of one to three drives from every face, at --depth and at the design's deepest pull;
+    writes tips.json, the walker's table."""
+    design: str = "six_rod"
+    """A preset (six_rod, six_rod_flexible, paper) or a TOML file."""
+    out: Path = Path("step")
+    """Folder to write in."""
+    dt: float = 2e-3
+    """Physics time step [s]."""
+
+    def run(self) -> Report:
+        design = as_design(self.design)
+        if not 0 < self.depth <= design.stiff_cable.max_pull:
+            limit = design.stiff_cable.max_pull
+            raise InputError(f"depth = {self.depth!r} is outside (0, {limit:g}], the design's max_pull")
+        low, high = LEAST_TIME_STEP, LARGEST_TIME_STEP
+        if not low <= self.dt <= high or abs(PERIOD / self.dt - round(PERIOD / self.dt)) > 1e-6:
+            raise InputError(f"dt = {self.dt!r} must be in [{low:g}, {high:g}] s and divide {PERIOD} s")
+        if self.out.exists() and not self.out.is_dir():
+            raise InputError(f"--out {self.out} is a file; give a folder")
+        import matplotlib  # noqa: F401  # missing, it fails here, before anything is written
+        with TensegrityRobot(design, dt=self.dt) as robot:
+            count = len(robot.drives)
+            if not all(1 <= d <= count for d in self.drives) or len(set(self.drives)) < len(self.drives):
+                raise InputError(f"drives = {self.drives} must be different numbers from 1 to {count}")
+            faces = [face_by_nodes(robot.faces, self.face)] if self.face else range(len(robot.faces.triangles))
+            if self.all_faces:
+                return self._table(robot)
+            tip = self._find(robot, faces)
+            self.out.mkdir(parents=True, exist_ok=True)
+            record = _record(robot, tip)
+        _draw_storyboard(record, self.out / "storyboard.png")
+        _draw_drives(record, self.out / "drives.png")
+        names = robot.faces.names()
+        pulled = ", ".join(str(d + 1) for d in tip.pull.drives)
+        travel = float(np.hypot(*tip.travel))
+        data = {"from_face": names[tip.from_face], "to_face": names[tip.to_face], "tipped": tip.tipped,
+                "drives": [d + 1 for d in tip.pull.drives], "depth": tip.pull.depth, "travel_m": travel,
+                "peak_tension_N": tip.peak_tension, "out": str(self.out)}  # fmt: skip
+        row = [data["from_face"], data["to_face"], pulled, tip.pull.depth, travel, tip.peak_tension]
+        text = table(["from face", "to face", "drives", "depth", "travel m", "peak tension N"], [row])
+        if not tip.tipped:
+            text += "\nThe robot did not tip; try other --drives or a larger --depth."
+        return Report(text, data, passed=tip.tipped)
+
+    def _find(self, robot: TensegrityRobot, faces: Any) -> Tip:
+        choices = [tuple(d - 1 for d in self.drives)] if self.drives else list(subsets(len(robot.drives)))
+        for face in faces:
+            for chosen in choices:
+                tip = tip_from(robot, face, Pull(chosen, self.depth))
+                if tip.tipped or (self.face and self.drives):
+                    return tip
+        what = f"pull of drives {', '.join(map(str, self.drives))}" if self.drives else "choice of one to three drives"
+        where = self.face or "any face"
+        raise SimulationError(f"no {what} tips the robot from {where} at depth {self.depth:g}")
+
+    def _table(self, robot: TensegrityRobot) -> Report:
+        from tqdm import tqdm
+
+        with tqdm(desc="pulls", unit="pull", file=sys.stderr) as bar:
+            def progress(done: int, total: int) -> None:
+                bar.total = total
+                bar.update(done - bar.n)
+
+            tips = tip_table(robot, (self.depth, robot.design.stiff_cable.max_pull), progress=progress)
+        self.out.mkdir(parents=True, exist_ok=True)
+        save_table(tips, self.out / "tips.json")
+        names = robot.faces.names()
+        rows = []
+        for face, name in enumerate(names):
+            here = [t for t in tips if t.from_face == face]
+            moved = [t for t in here if t.tipped]
+            targets = sorted({names[t.to_face] for t in moved})
+            kind = "closed" if robot.faces.closed[face] else "open"
+            rows.append([name, kind, f"{len(moved)} of {len(here)}", " ".join(targets)])
+        total = sum(t.tipped for t in tips)
+        text = table(["face", "kind", "pulls that tip", "onto"], rows) + f"\n{total} of {len(tips)} pulls tip the robot"
+        return Report(text, {"out": str(self.out / "tips.json"), "pulls": len(tips), "tipped": total,
+                             "peak_tension_N": max(t.peak_tension for t in tips)})  # fmt: skip
+
+
+@dataclass
+class _Record:
+    times: list[float]
+    frames: list[tuple[float, np.ndarray]]  # time [s], picture
+    drives: list[np.ndarray]
+    tensions: list[np.ndarray]
+    ratio: float
+
+
+def _record(robot: TensegrityRobot, tip: Tip, settle: float = 0.5) -> _Record:
+    """Run the step again with the camera on: the same start gives the same motion."""
+    record = _Record([], [], [], [], robot.design.drive.gear_ratio)
+    robot.reset(tip.from_face)
+    robot.step(round(settle / robot.dt))
+    start = robot.time
+    wanted = np.linspace(0, tip.pull.duration - PERIOD, FRAMES)
+    driven = slice(robot.cables.first_driven, robot.cables.first_driven + len(robot.drives))
+
+    def watch(robot: TensegrityRobot) -> None:
+        now = robot.time - start
+        record.times.append(now)
+        record.drives.append(robot.drives.copy())
+        record.tensions.append(robot.tensions[driven].copy())
+        if len(record.frames) < FRAMES and now >= wanted[len(record.frames)]:
+            record.frames.append((now, render(robot)))
+
+    run_pull(robot, tip.pull, watch, PERIOD)
+    return record
+
+
+def _draw_storyboard(record: _Record, out: Path) -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(2, 3, figsize=(12, 6.4))
+    for axis, (time, frame) in zip(axes.flat, record.frames, strict=True):
+        axis.imshow(frame)
+        axis.set_title(f"t = {time:.2f} s")
+        axis.axis("off")
+    figure.tight_layout()
+    figure.savefig(out, dpi=110)
+    plt.close(figure)
+
+
+def _draw_drives(record: _Record, out: Path) -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    times, state = np.array(record.times), np.array(record.drives)
+    figure, (angle, torque, tension) = plt.subplots(3, 1, sharex=True, figsize=(9, 9))
+    for d in range(state.shape[1]):
+        colour = f"C{d}"
+        angle.plot(times, state[:, d, drive_kernel.COMMAND], "--", color=colour, lw=0.8)
+        angle.plot(times, state[:, d, drive_kernel.ROTOR_ANGLE] / record.ratio, color=colour, label=f"drive {d + 1}")
+        torque.plot(times, 1e3 * state[:, d, drive_kernel.LOAD_TORQUE], color=colour)
+        tension.plot(times, np.array(record.tensions)[:, d], color=colour)
+    angle.set(ylabel="spool angle [rad]", title="Dashed: commanded; full: true")
+    angle.legend(ncols=3)
+    torque.set(ylabel="load torque at the spool [mN m]")
+    tension.set(ylabel="tension of the stiff cable [N]", xlabel="time [s]")
+    for axis in (angle, torque, tension):
+        axis.grid(alpha=0.3)
+    figure.tight_layout()
+    figure.savefig(out, dpi=110)
+    plt.close(figure)

@@ -1,0 +1,1 @@
+"""What a robot is: parameter groups, RobotDesign, its file, its URDF."""

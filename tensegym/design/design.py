@@ -1,0 +1,221 @@
+"""RobotDesign: every physical parameter of a robot, validated where it is made. SI units throughout."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tensegym.arrays import FloatArray, IntArray, frozen
+from tensegym.errors import DesignError
+from tensegym.structure import structure as structures
+from tensegym.structure.equilibrium import check_balance
+from tensegym.structure.form_finding import form_find
+from tensegym.structure.structure import Structure
+
+from .parameters import Drive, ElasticCable, Payload, Rod, RodFlexure, StiffCable, bounded, check_ranges
+
+if TYPE_CHECKING:
+    from tensegym.flexure.models.rod_pin import RodPin
+
+PIN_TOLERANCE = 1.25  # of the buckling load with a split rod's pin over that with its hinge
+
+
+@dataclass(frozen=True)
+class RobotDesign:
+    """Every physical parameter of a robot. `standing` is the structure it is built in.
+
+    Raises DesignError or StructureError, naming field, value and allowed range.
+    """
+
+    structure: Structure = field(default_factory=structures.six_rod)
+    name: str = "six_rod"
+    form_finding: bool = True  # repair the nodes so that the pretension balances; otherwise they must balance as given
+    passive_rod: Rod = Rod()
+    active_rod: Rod = Rod(tube_mass=0.038, end_mass=0.2, end_mass_radius=0.016)
+    elastic_cable: ElasticCable = ElasticCable()
+    stiff_cable: StiffCable = StiffCable()
+    drive: Drive = Drive()
+    payload: Payload | None = None
+    flexure: RodFlexure | None = None
+    attachment_radius: float = bounded(0, 0.1, 0.004, "m", "cables are tied this far from the rod's axis")
+    spin_damping: float = bounded(0, 1, 1e-4, "N m s/rad", "resists a rod's spin about its own axis")
+    friction: float = bounded(0, 10, 0.8, "", "Coulomb coefficient, feet and rods against ground and each other")
+    gravity: float = bounded(0, 100, 9.81, "m/s^2", "downward")
+
+    def __post_init__(self) -> None:
+        check_ranges(self)
+        standing = self.structure
+        if self.elastic_cable.natural_length is None:
+            if self.form_finding:
+                standing = form_find(
+                    standing, self.elastic_cable.pretension,
+                    payload_tension=self.payload.pretension if self.payload else 0.0,
+                )
+            else:
+                check_balance(standing, self.elastic_cable.pretension)
+        object.__setattr__(self, "_standing", standing)
+        shortest = standing.lengths(standing.cables).min(initial=1.0) - 2 * self.attachment_radius
+        if self.cable_natural_lengths.min(initial=1.0) <= 0:
+            limit = self.elastic_cable.stiffness * shortest
+            raise DesignError(
+                f"ElasticCable.pretension = {self.elastic_cable.pretension!r} stretches a cable of {shortest:.4g} m "
+                f"from nothing; at stiffness {self.elastic_cable.stiffness:g} N/m it must be below {limit:.4g} N"
+            )
+        if self.payload is not None and self.payload_natural_length <= 0:
+            raise DesignError(
+                f"Payload.pretension = {self.payload.pretension!r} leaves its cables no natural length "
+                f"({self.payload_natural_length:.4g} m); lower the pretension or the radius, or raise the stiffness"
+            )
+
+        self._check_flexures()
+
+    def _check_flexures(self) -> None:
+        """Refuse rods that the prestress would buckle, and hinges that no pin stands for."""
+        if self.flexure is None:
+            return
+        compression = self.rod_compressions
+        for rod in self.flexible_rods.tolist():
+            limit = self.buckling_load(rod)
+            if compression[rod] >= limit:
+                a, b = self.structure.rods[rod] + 1
+                raise DesignError(
+                    f"RodFlexure: the prestress compresses rod {a}-{b} by {compression[rod]:.4g} N, over the "
+                    f"{limit:.4g} N at which its {self.flexure.hinge} buckles; thicken the hinge (thickness = "
+                    f"{self.flexure.thickness:g} m) or lower ElasticCable.pretension"
+                )
+            ratio = self.rod_pin(rod).buckling_ratio
+            if not 1 / PIN_TOLERANCE <= ratio <= PIN_TOLERANCE:
+                raise DesignError(
+                    f"RodFlexure: no pin stands for a {self.flexure.hinge} of length = {self.flexure.length:g} m: "
+                    f"with one the rod would buckle at {ratio:.3g} times its load, outside [{1 / PIN_TOLERANCE:g}, "
+                    f"{PIN_TOLERANCE:g}]; take a shorter hinge, or one that turns rather than shifts"
+                )
+
+    @property
+    def standing(self) -> Structure:
+        """The structure at rest: form-found, or as given."""
+        return self._standing  # type: ignore[attr-defined]
+
+    @cached_property
+    def active_rods(self) -> IntArray:
+        """Rods that carry drives: (a,) indices, ascending."""
+        driven = np.isin(self.structure.rods, self.structure.stiff_cables[:, 0]).any(axis=1)
+        return frozen(np.flatnonzero(driven))
+
+    def rod(self, index: int) -> Rod:
+        """The kind of rod at this index."""
+        return self.active_rod if index in self.active_rods else self.passive_rod
+
+    @cached_property
+    def flexible_rods(self) -> IntArray:
+        """Rods split by a flexure: (f,) indices, ascending."""
+        every = np.arange(len(self.structure.rods))
+        kinds = {"all": every, "active": self.active_rods, "passive": np.setdiff1d(every, self.active_rods)}
+        return frozen(kinds[self.flexure.rods] if self.flexure else every[:0])
+
+    @cached_property
+    def rod_compressions(self) -> FloatArray:
+        """(r,) force along each rod at rest, positive in compression [N]."""
+        nodes, cables = self.standing.nodes, self.standing.cables
+        span = nodes[cables[:, 1]] - nodes[cables[:, 0]]
+        lengths = np.linalg.norm(span, axis=1)
+        stretch = lengths - 2 * self.attachment_radius - self.cable_natural_lengths
+        pull = (self.elastic_cable.stiffness * stretch / lengths)[:, None] * span
+        forces = np.zeros_like(nodes)
+        np.add.at(forces, cables[:, 0], pull)
+        np.add.at(forces, cables[:, 1], -pull)
+        first, last = self.standing.rods.T
+        along = (nodes[last] - nodes[first]) / self.standing.rod_lengths[:, None]
+        return frozen(((forces[first] - forces[last]) * along).sum(axis=1) / 2)
+
+    def half_length(self, rod: int) -> float:
+        """Of the tube on either side of a split rod's hinge [m]. Raises DesignError when the hinge fills the rod."""
+        assert self.flexure is not None
+        half = (float(self.standing.rod_lengths[rod]) - self.flexure.length) / 2
+        if half <= 0:
+            raise DesignError(f"RodFlexure.length = {self.flexure.length!r} is outside (0, {self.length:g}) m: "
+                              "the hinge is longer than the rod")  # fmt: skip
+        return half
+
+    def buckling_load(self, rod: int) -> float:
+        """Compression under which a split rod bends out of line [N]."""
+        from tensegym.flexure.fem.buckling import buckling_load
+
+        assert self.flexure is not None
+        half = self.half_length(rod)
+        return buckling_load(self.flexure.geometry(), half, half)
+
+    def rod_pin(self, rod: int) -> RodPin:
+        """The pin and the torsion spring that stand for a split rod's hinge, fitted under the rod's prestress."""
+        from tensegym.flexure.models.rod_pin import rod_pin
+
+        assert self.flexure is not None
+        half = self.half_length(rod)
+        # rounded, so that equal rods share one fit; a rod that two-way cables stretch is fitted without load
+        compression = max(0.0, round(float(self.rod_compressions[rod]), 6))
+        return rod_pin(self.flexure.geometry(), half, half, self.flexure.max_angle, compression)
+
+    @property
+    def cable_natural_lengths(self) -> FloatArray:
+        """(c,) between attachment points [m]."""
+        cable = self.elastic_cable
+        count = len(self.structure.cables)
+        if cable.natural_length is not None:
+            return np.full(count, cable.natural_length - 2 * self.attachment_radius)
+        rest = self.standing.lengths(self.standing.cables) - 2 * self.attachment_radius
+        return rest - cable.pretension / cable.stiffness
+
+    @property
+    def stiff_cable_lengths(self) -> FloatArray:
+        """(w,) between attachment points at rest, where they are just slack [m]."""
+        return self.standing.lengths(self.standing.stiff_cables) - 2 * self.attachment_radius
+
+    @property
+    def payload_natural_length(self) -> float:
+        """Of the payload's cables, from a rod's mid-point to the ball's surface [m]."""
+        assert self.payload is not None
+        if self.payload.natural_length is not None:
+            return self.payload.natural_length
+        nodes, rods = self.standing.nodes, self.standing.rods
+        middles = nodes[rods].mean(axis=1)
+        reach = np.linalg.norm(middles - middles.mean(axis=0), axis=1).min()
+        return reach - self.payload.radius - self.payload.pretension / self.payload.stiffness
+
+    @property
+    def mass(self) -> float:
+        """Whole robot [kg]."""
+        rods = sum(self.rod(i).mass for i in range(len(self.structure.rods)))
+        return rods + (self.payload.mass if self.payload else 0.0)
+
+    @property
+    def length(self) -> float:
+        """L, the longest rod [m]: the unit of gait speeds."""
+        return float(self.structure.rod_lengths.max())
+
+    def with_(self, **changes: object) -> RobotDesign:
+        """A copy with some fields replaced, validated again."""
+        return replace(self, **changes)  # type: ignore[arg-type]
+
+
+def paper_design() -> RobotDesign:
+    """The paper's robot as its authors' model has it: no self-stress, so its springs push as well as pull."""
+    return RobotDesign(
+        structure=structures.paper(),
+        name="paper",
+        form_finding=False,
+        elastic_cable=ElasticCable(damping=150.0, pretension=1.0, natural_length=0.46806, two_way=True),
+        drive=Drive(voltage_limit=10.8),
+        attachment_radius=0.0,
+        spin_damping=1e-4,
+    )
+
+
+def flexible_design() -> RobotDesign:
+    """The six-rod robot with its three passive rods split by leaf springs."""
+    return RobotDesign(name="six_rod_flexible", flexure=RodFlexure())
+
+
+PRESETS = {"six_rod": RobotDesign, "paper": paper_design, "six_rod_flexible": flexible_design}

@@ -1,0 +1,195 @@
+"""Groups of physical parameters, each checked where it is made. SI units throughout."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tensegym.errors import DesignError
+
+if TYPE_CHECKING:
+    from tensegym.flexure.hinge.hinge import Hinge
+
+
+def bounded(low: float, high: float, default: float, unit: str, what: str, *, open_low: bool = False):
+    """A dataclass field holding a float in [low, high], or (low, high] with ``open_low``."""
+    return field(default=default, metadata={"low": low, "high": high, "open_low": open_low, "unit": unit, "what": what})
+
+
+def check_ranges(group: object) -> None:
+    """Raise DesignError naming the first field of a dataclass that is no finite number in its range."""
+    for f in fields(group):  # type: ignore[arg-type]
+        if "low" not in f.metadata:
+            continue
+        value, low, high = getattr(group, f.name), f.metadata["low"], f.metadata["high"]
+        number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+        inside = number and low <= value <= high and not (f.metadata["open_low"] and value == low)
+        if not inside:
+            bracket = "(" if f.metadata["open_low"] else "["
+            allowed = f"{bracket}{low:g}, {high:g}] {f.metadata['unit']}".rstrip()
+            raise DesignError(f"{type(group).__name__}.{f.name} = {value!r} is outside {allowed}")
+
+
+class Checked:
+    """Base of the parameter groups: ranges are checked on construction."""
+
+    def __post_init__(self) -> None:
+        check_ranges(self)
+
+
+@dataclass(frozen=True)
+class Rod(Checked):
+    """A rod: a tube with an equal lumped mass at each end and a spherical foot."""
+
+    tube_mass: float = bounded(0, 100, 0.028, "kg", "mass of the tube", open_low=True)
+    end_mass: float = bounded(0, 100, 0.05, "kg", "mass at each end")
+    tube_outer_radius: float = bounded(1e-4, 0.2, 0.004, "m", "outer radius, and that of the collision capsule")
+    tube_inner_radius: float = bounded(0, 0.2, 0.003, "m", "inner radius")
+    end_mass_radius: float = bounded(1e-4, 0.2, 0.01, "m", "radius of the solid ball each end mass is taken as")
+    foot_radius: float = bounded(1e-4, 0.2, 0.004, "m", "contact sphere at each end")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.tube_inner_radius >= self.tube_outer_radius:
+            raise DesignError(
+                f"Rod.tube_inner_radius = {self.tube_inner_radius!r} must be below "
+                f"tube_outer_radius = {self.tube_outer_radius!r} m"
+            )
+
+    @property
+    def mass(self) -> float:
+        """Whole rod [kg]."""
+        return self.tube_mass + 2 * self.end_mass
+
+    @property
+    def axial_inertia(self) -> float:
+        """About the rod's axis [kg m^2]."""
+        tube = 0.5 * self.tube_mass * (self.tube_outer_radius**2 + self.tube_inner_radius**2)
+        return tube + 2 * 0.4 * self.end_mass * self.end_mass_radius**2
+
+    def transverse_inertia(self, length: float) -> float:
+        """About an axis through the centre across the rod [kg m^2], for a rod of this length [m]."""
+        tube = self.tube_mass * (length**2 / 12 + (self.tube_outer_radius**2 + self.tube_inner_radius**2) / 4)
+        return tube + 2 * self.end_mass * (0.4 * self.end_mass_radius**2 + length**2 / 4)
+
+    def half(self, length: float) -> HalfRod:
+        """Half of the rod with a tube of this length [m]: half the tube's mass, one end mass, one foot."""
+        tube = self.tube_mass / 2
+        mass = tube + self.end_mass
+        centre = tube * length / 2 / mass
+        across = tube * (length**2 / 12 + (self.tube_outer_radius**2 + self.tube_inner_radius**2) / 4)
+        across += tube * (length / 2 - centre) ** 2 + self.end_mass * (0.4 * self.end_mass_radius**2 + centre**2)
+        return HalfRod(mass, centre, across, self.axial_inertia / 2)
+
+
+@dataclass(frozen=True)
+class HalfRod:
+    """Mass [kg], distance of the centre of mass from the outer end [m], moments of inertia about it [kg m^2]."""
+
+    mass: float
+    centre: float
+    transverse_inertia: float
+    axial_inertia: float
+
+
+@dataclass(frozen=True)
+class ElasticCable(Checked):
+    """The elastic cables: spring-dampers, tension only unless ``two_way``."""
+
+    stiffness: float = bounded(0, 1e6, 300.0, "N/m", "spring rate", open_low=True)
+    damping: float = bounded(0, 1e4, 5.0, "N s/m", "damper rate")
+    pretension: float = bounded(0, 1e4, 10.0, "N", "tension at rest, which sets the natural length")
+    natural_length: float | None = None  # m; given, it overrides the pretension (the paper's way)
+    two_way: bool = False  # the paper's springs push as well as pull
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.natural_length is not None and not 0 < self.natural_length < 100:
+            raise DesignError(f"ElasticCable.natural_length = {self.natural_length!r} is outside (0, 100] m")
+
+
+@dataclass(frozen=True)
+class StiffCable(Checked):
+    """The cables the drives wind."""
+
+    stiffness: float = bounded(0, 1e6, 2e4, "N/m", "spring rate", open_low=True)
+    damping: float = bounded(0, 1e4, 20.0, "N s/m", "damper rate")
+    max_pull: float = bounded(0, 0.9, 0.45, "", "deepest commanded pull, as a part of the cable's rest length",
+                              open_low=True)
+
+
+@dataclass(frozen=True)
+class Drive(Checked):
+    """A winch drive: brushless motor, rotor angle sensor, gear, spool, and its angle controller."""
+
+    spool_radius: float = bounded(1e-4, 1, 0.003, "m", "radius of the spool")
+    gear_ratio: float = bounded(1, 1e4, 19.0, "", "rotor turns a spool turn")
+    gear_efficiency: float = bounded(0.05, 1, 0.81, "", "part of the power that passes the gear")
+    backlash: float = bounded(0, 1, 0.0279, "rad", "play at the spool")
+    resistance: float = bounded(1e-3, 1e4, 5.3, "ohm", "winding")
+    torque_constant: float = bounded(1e-5, 10, 9.32e-3, "N m/A", "also the back-emf constant in V s/rad")
+    rotor_inertia: float = bounded(1e-10, 1, 0.85e-7, "kg m^2", "motor's rotor")
+    friction_current: float = bounded(0, 100, 0.0, "A", "current that turns the unloaded rotor")
+    voltage_limit: float = bounded(0, 1e3, 11.62, "V", "largest voltage of the controller", open_low=True)
+    current_limit: float = bounded(0, 1e3, 1.72, "A", "largest current of the controller", open_low=True)
+    speed_limit: float = bounded(0, 1e5, 1246.2, "rad/s", "largest rotor speed (11900 rpm)", open_low=True)
+    position_gain: float = bounded(0, 1e3, 1.25, "V/rad", "controller: voltage a radian of rotor error", open_low=True)
+    velocity_gain: float = bounded(0, 10, 0.0, "V s/rad", "controller: voltage taken off a rad/s of rotor speed")
+
+
+@dataclass(frozen=True)
+class Payload(Checked):
+    """A ball in the middle, hung on one elastic cable from every rod's mid-point."""
+
+    mass: float = bounded(0, 100, 0.5, "kg", "payload", open_low=True)
+    radius: float = bounded(1e-3, 10, 0.1, "m", "ball; the cables end on its surface")
+    stiffness: float = bounded(0, 1e6, 120.0, "N/m", "spring rate", open_low=True)
+    damping: float = bounded(0, 1e4, 5.0, "N s/m", "damper rate")
+    pretension: float = bounded(0, 1e4, 4.0, "N", "tension at rest")
+    natural_length: float | None = None  # m; given, it overrides the pretension
+    two_way: bool = False
+
+
+@dataclass(frozen=True)
+class RodFlexure(Checked):
+    """A flexure hinge that splits rods at mid-length: they bend in one plane, about a pin with a spring fitted to it.
+
+    ``hinge`` is a preset of tensegym.flexure.presets; a dimension left out keeps that preset's own. The pin and its
+    spring come from the hinge's finite elements (tensegym.flexure.models.rod_pin); the other five directions are held.
+    """
+
+    rods: str = "passive"
+    """Which rods are split: passive, active or all."""
+    hinge: str = "leaf-spring"
+    plane: str = "radial"
+    """Where they bend: radial, the plane through the robot's centre; tangential, the one across it."""
+    length: float = bounded(1e-3, 0.5, 0.04, "m", "of the hinge along the rod")
+    width: float = bounded(1e-4, 0.5, 0.025, "m", "of the leaves, across the plane of bending")
+    thickness: float = bounded(1e-5, 0.02, 0.0011, "m", "of the leaves")
+    height: float | None = None  # m; of hinges that have one, else the preset's own
+    youngs_modulus: float = bounded(1e6, 1e12, 2.1e11, "Pa", "of the leaves: spring steel")
+    poisson_ratio: float = bounded(0, 0.49, 0.3, "", "of the leaves")
+    loss_time: float = bounded(0, 1, 1e-3, "s", "Kelvin-Voigt: damping over stiffness")
+    max_angle: float = bounded(1e-3, 1.5, 0.3, "rad", "stops of the rod, and range of the spring's fit")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name, allowed in (("rods", ("passive", "active", "all")), ("plane", ("radial", "tangential"))):
+            if getattr(self, name) not in allowed:
+                raise DesignError(f"RodFlexure.{name} = {getattr(self, name)!r} is not one of {', '.join(allowed)}")
+        if self.height is not None and not 0 < self.height <= 0.5:
+            raise DesignError(f"RodFlexure.height = {self.height!r} is outside (0, 0.5] m")
+        self.geometry()
+
+    def geometry(self) -> Hinge:
+        """The hinge, for the finite elements. Raises FlexureError for an unknown one or sizes that make none."""
+        from tensegym.flexure.hinge.hinge import Material
+        from tensegym.flexure.hinge.presets import preset
+
+        sizes = {"length": self.length, "width": self.width, "thickness": self.thickness}
+        if self.height is not None:
+            sizes["height"] = self.height
+        hinge = preset(self.hinge, **sizes, arm=0.0)
+        return hinge.with_material(Material(self.youngs_modulus, self.poisson_ratio))

@@ -1,0 +1,65 @@
+"""The paper's Fig. 5 from the stand in PyBullet, and the arm's free vibration. matplotlib is imported late."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from tensegym.flexure.figures import _pyplot
+from tensegym.flexure.hinge.states import States
+from tensegym.flexure.models.joint import Joint
+
+from .stand import ARM, Pull, Vibration
+
+
+def save_picture(picture: NDArray[np.uint8], path: Path) -> None:
+    """Write (h, w, 3) as it is."""
+    _pyplot().imsave(path, picture)
+
+
+def figure_5(name: str, fem: States, stand: Pull, measured: States, fitted: Joint | None, path: Path) -> None:
+    """Torque against angle by FEM, the joint in PyBullet and the virtual measurement, with what each misses of the FEM,
+    and the tip's path."""
+    plt = _pyplot()
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(14, 4.2), layout="constrained")
+    theta = stand.poses[:, 2]
+    pale = {"color": "black", "lw": 2.5, "alpha": 0.35, "label": "FEM"}
+    left.plot(np.degrees(fem.theta), 1e3 * fem.moment, **pale)
+    series = [("o", "tab:red", "joint in PyBullet", theta, stand.moment()),
+              ("x", "tab:blue", "virtual measurement", measured.theta, measured.moment)]  # fmt: skip
+    if fitted is not None:
+        model = next(iter(fitted.models.values()))
+        again = model.poses(measured.theta, measured.force)
+        series.append(("--", "tab:green", "fit to the measurement", measured.theta, again.moment))
+    for style, colour, label, angle, moment in series:
+        gap = moment - CubicSpline(fem.theta, fem.moment)(angle)
+        left.plot(np.degrees(angle), 1e3 * moment, style, ms=5, mfc="none", color=colour, label=label)
+        middle.plot(np.degrees(angle), 1e3 * gap, style, ms=5, mfc="none", color=colour, label=label)
+    right.plot(1e3 * fem.tip[:, 0], 1e3 * fem.tip[:, 1], **pale)
+    right.plot(*(1e3 * stand.poses[:, :2].T), "o", ms=5, mfc="none", color="tab:red", label="joint in PyBullet")
+    right.plot(*(1e3 * measured.tip.T), "x", ms=5, color="tab:blue", label="virtual measurement")
+    left.set(title=f"{name}, arm {1e3 * ARM:g} mm", xlabel=r"angle $\theta$ [deg]", ylabel="moment about tip [N mm]")
+    middle.set(title="less FEM at the same angle", xlabel=r"angle $\theta$ [deg]", ylabel="moment [N mm]")
+    right.set(title="path of the tip", xlabel="x [mm]", ylabel="y [mm]")
+    for axis in (left, middle, right):
+        axis.grid(alpha=0.3)
+        axis.legend(fontsize=7)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def vibration_picture(name: str, run: Vibration, path: Path) -> None:
+    """Angle and energy after the arm is let go."""
+    plt = _pyplot()
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.6), layout="constrained")
+    left.plot(run.time, np.degrees(run.theta), lw=1)
+    left.set(title=f"{name}: {run.frequency:.4g} Hz", xlabel="t [s]", ylabel=r"$\theta$ [deg]")
+    right.plot(run.time, 1e3 * run.energy, lw=1)
+    right.set(title="kinetic and elastic energy", xlabel="t [s]", ylabel="[mJ]", ylim=(0, 1.2e3 * run.energy.max()))
+    for axis in (left, right):
+        axis.grid(alpha=0.3)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)

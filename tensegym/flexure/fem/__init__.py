@@ -1,0 +1,1 @@
+"""A planar beam FEM of a hinge."""

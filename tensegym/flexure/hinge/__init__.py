@@ -1,0 +1,1 @@
+"""Hinges: geometry, presets, files, and states of equilibrium."""

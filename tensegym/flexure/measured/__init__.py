@@ -1,0 +1,1 @@
+"""Data of an experiment, from pictures to a fitted joint."""

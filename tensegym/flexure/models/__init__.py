@@ -1,0 +1,1 @@
+"""Fitted models of a hinge: the paper's springs and the potential."""

@@ -1,0 +1,71 @@
+"""Where a joint model stands under dead loads: the state whose moment is the asked one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from tensegym.errors import FlexureError
+from tensegym.flexure.fem import solve as fem
+from tensegym.flexure.fem.sampling import Box
+from tensegym.flexure.hinge.hinge import Hinge
+from tensegym.flexure.hinge.states import FloatArray
+
+from .joint import Model
+
+GRID = 129  # angles scanned for a crossing
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The pose under one load, or why there is none."""
+
+    theta: float
+    """[rad]; NaN with a reason, as the rest."""
+    x: float
+    """Tip in base axes [m]."""
+    y: float
+    energy: float
+    """Strain energy [J]; NaN for a model that has none."""
+    reason: str = ""
+
+
+def solve_fem(hinge: Hinge, loads: FloatArray, elements: int = fem.ELEMENTS) -> list[Answer]:
+    """Answers to loads (n, 3) force x, y [N] and moment [N m] at the tip, each applied from rest in proportion."""
+    solution = fem.apply_wrench(hinge, loads, elements=elements)
+    columns = np.column_stack([solution.theta, solution.tip, solution.energy]).tolist()
+    return [Answer(t, x, y, energy, solution.reason(i)) for i, (t, x, y, energy) in enumerate(columns)]
+
+
+def solve_model(model: Model, box: Box, loads: FloatArray) -> list[Answer]:
+    """Answers of a fitted model: a root of M(theta) at the load's force, bracketed. A load outside gets a reason."""
+    return [_solve_one(model, box, load) for load in loads]
+
+
+def _solve_one(model: Model, box: Box, load: FloatArray) -> Answer:
+    nothing = (np.nan, np.nan, np.nan, np.nan)
+    force, asked = load[:2], float(load[2])
+    if np.abs(force).max() > box.max_force * (1 + 1e-9):
+        return Answer(*nothing, f"the force {np.abs(force).max():.4g} N is outside the fitted +-{box.max_force:.4g} N")
+    angles = np.linspace(-box.max_angle, box.max_angle, GRID)
+    try:
+        gap = model.poses(angles, np.broadcast_to(force, (GRID, 2))).moment - asked
+    except FlexureError as error:
+        return Answer(*nothing, str(error))
+    rising = np.flatnonzero((gap[:-1] <= 0) & (gap[1:] > 0))  # a falling moment is an unstable state
+    if not len(rising):
+        low, high = np.nanmin(gap) + asked, np.nanmax(gap) + asked
+        angle = np.degrees(box.max_angle)
+        return Answer(*nothing, f"no stable state within +-{angle:.4g} deg: at this force the moment spans "
+                      f"{1e3 * low:.4g} to {1e3 * high:.4g} Nmm")  # fmt: skip
+    i = rising[np.argmin(np.abs(angles[rising]))]
+
+    def miss(theta: float) -> float:
+        return float(model.poses(np.array([theta]), force[None]).moment[0]) - asked
+
+    theta = angles[i] if gap[i] == 0 else brentq(miss, angles[i], angles[i + 1], xtol=1e-14, rtol=1e-14)
+    state = model.poses(np.array([theta]), force[None])
+    energy = float(model.energies(state)[0]) if hasattr(model, "energies") else np.nan
+    return Answer(float(theta), float(state.tip[0, 0]), float(state.tip[0, 1]), energy)

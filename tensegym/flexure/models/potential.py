@@ -1,0 +1,113 @@
+"""Potential: a hinge as one passive planar joint, its wrench the gradient of an energy that is never negative."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tensegym.errors import FlexureError
+from tensegym.flexure.fem.sampling import Box
+from tensegym.flexure.hinge.states import FloatArray, States
+
+from . import potential_kernel as kernel
+
+
+@dataclass(frozen=True)
+class Potential:
+    """V(theta, p) of potential_kernel.py with its units and its box; the reference's section 3, odd terms added.
+
+    Passive by construction: V >= 0, zero at rest only, and the wrench is its gradient, so no closed loop makes energy.
+    Inside the box it is certified (certificate.py); a load outside is refused.
+    """
+
+    coefficients: FloatArray
+    """(8, degree + 1) rows named in potential_kernel.NAMES, powers of theta / angle_scale, dimensionless."""
+    length: float
+    """L [m]."""
+    moment_scale: float
+    """M0 [N m]: unit of energy; M0 / L is the unit of force."""
+    angle_scale: float
+    """theta0 [rad]."""
+    box: Box
+    """Where the fit holds."""
+    scales: FloatArray = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        rows = np.ascontiguousarray(self.coefficients, dtype=float)
+        if rows.ndim != 2 or rows.shape[0] != len(kernel.NAMES) or not np.isfinite(rows).all():
+            raise FlexureError(f"coefficients have shape {rows.shape}; give 8 finite rows: {', '.join(kernel.NAMES)}")
+        for name in ("length", "moment_scale", "angle_scale"):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and value > 0):
+                raise FlexureError(f"{name} = {value:g}; give a finite value above 0")
+        if rows[kernel.RHO, 0] != 0 or rows[kernel.SIGMA, 0] != 0:
+            raise FlexureError("rho and sigma must have no constant term: the joint rests at (L, 0)")
+        object.__setattr__(self, "coefficients", rows)
+        object.__setattr__(self, "scales", np.array([self.length, self.moment_scale, self.angle_scale]))
+
+    @property
+    def coefficient_count(self) -> int:
+        """Coefficients that are not zero."""
+        return int(np.count_nonzero(self.coefficients))
+
+    def wrench(self, x: float, y: float, theta: float) -> tuple[float, float, float]:
+        """Force x, y [N] in base axes and moment about the tip [N m] that hold the tip at (x, y) [m], theta [rad].
+
+        Not refused outside the box: a simulation may pass through.
+        """
+        fx, fy, moment, _ = kernel.wrench(self.coefficients, self.scales, x, y, theta)
+        return fx, fy, moment
+
+    def energy(self, x: float, y: float, theta: float) -> float:
+        """V [J]."""
+        return kernel.wrench(self.coefficients, self.scales, x, y, theta)[3]
+
+    def stiffness(self, x: float, y: float, theta: float) -> FloatArray:
+        """(3, 3) symmetric Jacobian of the wrench over (x, y, theta)."""
+        out = np.empty((3, 3))
+        kernel.stiffness(self.coefficients, self.scales, x, y, theta, out)
+        return out
+
+    def wrenches(self, poses: ArrayLike) -> FloatArray:
+        """(n, 3) wrenches of (n, 3) poses x, y, theta."""
+        return kernel.wrench_batch(self.coefficients, self.scales, _table(poses, 3, "poses"))[0]
+
+    def stiffnesses(self, poses: ArrayLike) -> FloatArray:
+        """(n, 3, 3) Jacobians of the wrench at (n, 3) poses x, y, theta."""
+        return kernel.stiffness_batch(self.coefficients, self.scales, _table(poses, 3, "poses"))
+
+    def poses(self, theta: ArrayLike, force: ArrayLike) -> States:
+        """The states at theta (n,) [rad] under dead forces (n, 2) [N] at the tip, explicit.
+
+        Raises FlexureError for a row outside the box.
+        """
+        angle = np.ascontiguousarray(np.atleast_1d(np.asarray(theta, dtype=float)))
+        forces = np.ascontiguousarray(np.broadcast_to(np.asarray(force, dtype=float), (len(angle), 2)))
+        out = kernel.pose_batch(self.coefficients, self.scales, angle, forces)
+        self._refuse(angle, forces, out[:, 4])
+        return States(angle, out[:, :2], forces, out[:, 2])
+
+    def energies(self, states: States) -> FloatArray:
+        """(n,) V [J] at the poses of ``states``."""
+        poses = np.column_stack([states.tip, states.theta])
+        return kernel.wrench_batch(self.coefficients, self.scales, poses)[1]
+
+    def _refuse(self, angle: FloatArray, force: FloatArray, guard: FloatArray) -> None:
+        slack = 1 + 1e-9
+        if (np.abs(angle) > slack * self.box.max_angle).any():
+            raise FlexureError(f"theta = {np.degrees(np.abs(angle).max()):.4g} deg is outside the fitted "
+                               f"+-{np.degrees(self.box.max_angle):.4g} deg; fit a larger box")  # fmt: skip
+        if (np.abs(force) > slack * self.box.max_force).any():
+            raise FlexureError(f"a force of {np.abs(force).max():.4g} N is outside the fitted "
+                               f"+-{self.box.max_force:.4g} N on each axis; fit a larger box")  # fmt: skip
+        if not (guard > 0).all():
+            raise FlexureError("K - 2 g n <= 0: the joint buckles under this load")
+
+
+def _table(value: ArrayLike, columns: int, name: str) -> FloatArray:
+    array = np.ascontiguousarray(value, dtype=float)
+    if array.ndim != 2 or array.shape[1] != columns:
+        raise FlexureError(f"{name} has shape {array.shape}; give (n, {columns})")
+    return array

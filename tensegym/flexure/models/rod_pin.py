@@ -1,0 +1,92 @@
+"""RodPin: the pin with a torsion spring that stands for a hinge inside a rod.
+
+Not the pin of the paper's F1, which looks at the tip's path alone: a rod's far end sees the turn as well. A leaf bent
+by a moment turns its tip about L / 2, while the tip's path is a circle about L / 4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from tensegym.errors import FlexureError
+from tensegym.flexure.fem import solve as fem
+from tensegym.flexure.fem.buckling import buckling_load, check_parts
+from tensegym.flexure.hinge.hinge import Hinge
+from tensegym.flexure.hinge.states import FloatArray, States, join
+
+from .torsion_spring import TorsionSpring, stiffness_about
+
+POINTS = 20  # states a side
+PASSES = 4  # of the direction of the rod's line; the tip moves little with it
+
+
+@dataclass(frozen=True)
+class RodPin:
+    """A pin on the hinge's axis, a torsion spring in it, and how far both are from the hinge."""
+
+    place: float
+    """Fraction of the hinge's length, from its base."""
+    stiffness: float
+    """[N m/rad]."""
+    moment_error: float
+    """Largest difference of the moment about the pin over the range, of the largest moment."""
+    tip_error: float
+    """Largest distance of the hinge's tip from where the pin puts it [m]."""
+    buckling_ratio: float
+    """Buckling load of the rod with the pin over that with the hinge: far from 1, the hinge gives way by more than its
+    turn, as a parallel guide does, and no pin stands for it."""
+
+
+@lru_cache(maxsize=256)
+def rod_pin(hinge: Hinge, before: float, after: float, max_angle: float, compression: float = 0.0,
+            elements: int = fem.ELEMENTS) -> RodPin:  # fmt: skip
+    """The pin fitted by least squares to a hinge in a rod that equal and opposite end moments bend by +-``max_angle``.
+
+    before, after: rigid parts of the rod [m]; max_angle [rad], in (0, pi/2). ``compression`` [N] on the line of the
+    ends acts besides: the fit is then to the hinge as it bends in the loaded rod, where its moment varies along it.
+    Raises FlexureError as ``buckling_load``, and for an angle or a compression out of range.
+    """
+    check_parts(before, after)
+    if not 0 < max_angle < np.pi / 2:
+        raise FlexureError(f"max_angle = {max_angle:g} rad is outside (0, pi/2)")
+    limit = buckling_load(hinge, before, after, elements)
+    if not 0 <= compression < limit:
+        raise FlexureError(f"compression = {compression:g} N is outside [0, {limit:.4g}) N, the rod's buckling load; "
+                           "lower it or take a stiffer hinge")  # fmt: skip
+    angle = max_angle * np.arange(1, POINTS + 1) / POINTS
+    halves = [rod_states(hinge, sign * angle, before, after, compression, elements) for sign in (-1, 1)]
+    states = join(halves)
+    turned = np.column_stack([np.cos(states.theta) - 1, np.sin(states.theta)]).ravel()
+    link = float(turned @ (states.tip - [hinge.length, 0.0]).ravel() / (turned @ turned))
+    stiffness = stiffness_about(states, hinge.length - link)
+    model = TorsionSpring(hinge.length, link / hinge.length, stiffness).poses(states.theta, states.force)
+    rod, first = before + hinge.length + after, before + hinge.length - link
+    return RodPin(
+        1 - link / hinge.length, stiffness,
+        float(np.abs(states.moment - model.moment).max() / (stiffness * max_angle)),
+        float(np.hypot(*(states.tip - model.tip).T).max()),
+        stiffness * rod / (first * (rod - first)) / limit,
+    )  # fmt: skip
+
+
+def rod_states(hinge: Hinge, theta: FloatArray, before: float, after: float, compression: float,
+               elements: int = fem.ELEMENTS) -> States:  # fmt: skip
+    """States at theta (n,) [rad] of a hinge in a rod that moments bend, ``compression`` [N] along the line of its ends.
+
+    before, after: rigid parts [m]. Raises FlexureError where the hinge does not reach them.
+    """
+    line = 0.5 * theta  # exact for a symmetric rod
+    for _ in range(PASSES if compression else 1):
+        force = -compression * np.column_stack([np.cos(line), np.sin(line)])
+        solution = fem.rotate(hinge, theta, force=force, elements=elements)
+        bad = np.flatnonzero(solution.status != fem.CONVERGED)
+        if len(bad):
+            i = int(bad[0])
+            raise FlexureError(f"{hinge.name}: a rod compressed by {compression:g} N {solution.reason(i)} towards "
+                               f"{np.degrees(theta[i]):.3g} deg; lower max_angle")  # fmt: skip
+        ends = solution.tip + after * np.column_stack([np.cos(theta), np.sin(theta)]) + [before, 0.0]
+        line = np.arctan2(ends[:, 1], ends[:, 0])
+    return solution.states()

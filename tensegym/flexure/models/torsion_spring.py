@@ -1,0 +1,56 @@
+"""TorsionSpring: the paper's 1-DoF pseudo-rigid-body model, a pin with a spring."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tensegym.errors import FlexureError
+from tensegym.flexure.hinge.states import FloatArray, States
+
+from .pseudo_rigid import torsion_lambda
+
+
+@dataclass(frozen=True)
+class TorsionSpring:
+    """A pin at (L (1 - lambda), 0), a rigid link lambda L to the tip, and a spring of constant stiffness."""
+
+    length: float
+    """L [m]."""
+    fraction: float
+    """lambda, of L; above 1 the pin lies behind the hinge's base."""
+    stiffness: float
+    """[N m/rad]."""
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.stiffness) and self.stiffness > 0):
+            raise FlexureError(f"stiffness = {self.stiffness:g} N m/rad; give a finite value above 0")
+
+    def poses(self, theta: FloatArray, force: FloatArray) -> States:
+        """States at theta (n,) [rad] under the dead force (n, 2) [N] at the tip; the pin does not give."""
+        arm = self.fraction * self.length
+        link = arm * np.column_stack([np.cos(theta), np.sin(theta)])
+        tip = link + np.array([self.length - arm, 0.0])
+        moment = self.stiffness * theta - (link[:, 0] * force[:, 1] - link[:, 1] * force[:, 0])
+        return States(theta, tip, np.broadcast_to(force, (len(theta), 2)), moment)
+
+    def energies(self, states: States) -> FloatArray:
+        """(n,) strain energy [J]."""
+        return 0.5 * self.stiffness * states.theta**2
+
+
+def fit_torsion(states: States, length: float) -> TorsionSpring:
+    """lambda by F1, then the stiffness by least squares on the moment about the pin."""
+    fraction = torsion_lambda(states, length)
+    return TorsionSpring(length, fraction, stiffness_about(states, length * (1 - fraction)))
+
+
+def stiffness_about(states: States, place: float) -> float:
+    """Stiffness [N m/rad] by least squares on the moment about a pin at (``place``, 0) [m]."""
+    whole = states.whole()
+    if len(whole) < 2:
+        raise FlexureError(f"{len(whole)} states with tip, force and moment; the torsion spring needs 2 or more")
+    pin = whole.tip - [place, 0.0]
+    about_pin = whole.moment + pin[:, 0] * whole.force[:, 1] - pin[:, 1] * whole.force[:, 0]
+    return float(whole.theta @ about_pin / (whole.theta @ whole.theta))

@@ -1,0 +1,1 @@
+"""TensegrityRobot, its state, placement, start poses, gait metrics, rendering."""

@@ -1,0 +1,122 @@
+"""What rolling means: speed, tips, foot slip, energy and its audit. Every gait in this project is judged here."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from tensegym.arrays import FloatArray
+from tensegym.physics.drives import CURRENT
+from tensegym.structure.faces import supporting_face
+
+from .robot import TensegrityRobot
+
+AUDIT_TOLERANCE = 0.01  # mechanical energy over what the start and the drives' work allow
+
+
+@dataclass(frozen=True)
+class GaitMetrics:
+    """One trial. Displacements are horizontal and of the centre of mass.
+
+    speed: displacement along the wanted direction over time [m/s]; speed_lps the same in rod lengths a second.
+    path: length of the way [m]. tips: changes of the hull triangle under the centre of mass.
+    slip_share: path of the grounded feet's centres, averaged over the grounded feet, over the path of the centre of
+    mass: 0 for pure rolling, 1 for a body that skates. slip_share_sum: the same with the feet's paths summed.
+    energy: electrical, what the drives draw [J]. cost_of_transport: energy / (m g displacement along), inf if <= 0.
+    audit_excess: largest part by which kinetic + gravity + elastic energy exceeded the start's plus the drives' work.
+    """
+
+    duration: float
+    speed: float
+    speed_lps: float
+    path: float
+    tips: int
+    slip_share: float
+    slip_share_sum: float
+    energy: float
+    drive_work: float
+    cost_of_transport: float
+    audit_excess: float
+
+    @property
+    def audit_passed(self) -> bool:
+        return self.audit_excess <= AUDIT_TOLERANCE
+
+    def as_dict(self) -> dict[str, float | int | bool | None]:
+        """Plain JSON types; an infinite cost of transport becomes None."""
+        data = vars(self) | {"audit_passed": self.audit_passed}
+        return {name: value if math.isfinite(value) else None for name, value in data.items()}
+
+
+class DriveMeter:
+    """Watches the drives of a robot through a trial; call `update` once a control step."""
+
+    def __init__(self, robot: TensegrityRobot) -> None:
+        self.robot = robot
+        self._squares = np.zeros(len(robot.drives))
+        self._updates = 0
+
+    def update(self) -> None:
+        """Take the present currents in."""
+        self._squares += (self.robot.drives[:, CURRENT] / self.robot.design.drive.current_limit) ** 2
+        self._updates += 1
+
+    @property
+    def load(self) -> float:
+        """Root mean square current of the hardest worked drive, as a part of the current limit."""
+        return float(np.sqrt(self._squares.max(initial=0.0) / max(1, self._updates)))
+
+
+class GaitMeter:
+    """Watches a robot through a trial; call `update` once a control step.
+
+    direction: wanted heading in the world's horizontal plane, (2,) unit vector.
+    """
+
+    def __init__(self, robot: TensegrityRobot, direction: FloatArray) -> None:
+        self.robot = robot
+        self.direction = np.asarray(direction, dtype=float)
+        self._weight, self._length = robot.design.mass * robot.design.gravity, robot.design.length
+        self._start = robot.centre_of_mass_in_world()
+        self._start_time = robot.time
+        self._start_account = robot.account()
+        self._start_energy = robot.energies().total
+        self._excess = 0.0
+        self.tips = 0
+        self.face = self._face(robot.nodes_in_world()[0], self._start)
+
+    def _face(self, nodes: FloatArray, centre: FloatArray) -> int:
+        return supporting_face(self.robot.faces, nodes, centre)
+
+    def update(self, nodes: FloatArray | None = None, velocities: FloatArray | None = None) -> None:
+        """Take the robot's present state in; pass nodes (n, 3) and body velocities (b, 6) when read already."""
+        robot = self.robot
+        nodes = robot.node_positions_in_world() if nodes is None else nodes
+        face = self._face(nodes, robot.centre_of_mass_in_world())
+        self.tips += face != self.face
+        self.face = face
+        allowed = self._start_energy + robot.account().drive_work - self._start_account.drive_work
+        self._excess = max(self._excess, robot.energies(velocities).total / allowed - 1)
+
+    def metrics(self) -> GaitMetrics:
+        """The trial so far."""
+        robot, start, now = self.robot, self._start_account, self.robot.account()
+        duration = max(robot.time - self._start_time, robot.dt)
+        along = float(self.direction @ (robot.centre_of_mass_in_world() - self._start)[:2])
+        path = max(now.centre_path - start.centre_path, 1e-9)
+        energy = now.electrical_energy - start.electrical_energy
+        return GaitMetrics(
+            duration=duration,
+            speed=along / duration,
+            speed_lps=along / duration / self._length,
+            path=path,
+            tips=self.tips,
+            slip_share=(now.foot_path - start.foot_path) / path,
+            slip_share_sum=(now.foot_path_sum - start.foot_path_sum) / path,
+            energy=energy,
+            drive_work=now.drive_work - start.drive_work,
+            cost_of_transport=energy / (self._weight * along) if along > 0 else float("inf"),
+            audit_excess=self._excess,
+        )

@@ -1,0 +1,1 @@
+"""What a tensegrity is, at rest: nodes and members, equilibrium, form finding, faces, symmetry, modes."""

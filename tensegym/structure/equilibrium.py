@@ -1,0 +1,108 @@
+"""Equilibrium of tensegrities: self-stress, mechanisms, prestress.
+
+Force density is a member's force over its length, tension positive [N/m]. A q = 0 with the equilibrium matrix A is the
+balance of every node (Pellegrino and Calladine 1986, "Matrix analysis of statically and kinematically indeterminate
+frameworks").
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import linprog
+
+from tensegym.arrays import FloatArray, IntArray
+from tensegym.errors import StructureError
+
+from .structure import Structure
+
+RANK_TOLERANCE = 1e-9  # of the largest singular value
+BALANCE_TOLERANCE = 1e-6  # of the tension: residual force a balanced node may show
+
+
+def members(structure: Structure, stiff: bool = False) -> IntArray:
+    """(m, 2) node pairs: elastic cables, then stiff cables when asked for, then rods."""
+    parts = [structure.cables, structure.stiff_cables if stiff else np.zeros((0, 2), int), structure.rods]
+    return np.concatenate(parts)
+
+
+def equilibrium_matrix(structure: Structure, stiff: bool = False) -> FloatArray:
+    """A (3n, m): times force densities (m,) it gives the members' pull on each node [N], xyz by xyz."""
+    pairs = members(structure, stiff)
+    matrix = np.zeros((len(structure.nodes), 3, len(pairs)))
+    span = structure.nodes[pairs[:, 1]] - structure.nodes[pairs[:, 0]]
+    columns = np.arange(len(pairs))
+    matrix[pairs[:, 0], :, columns] = span
+    matrix[pairs[:, 1], :, columns] -= span
+    return matrix.reshape(-1, len(pairs))
+
+
+@dataclass(frozen=True)
+class StaticCount:
+    """rank of the equilibrium matrix, self-stress states (m - rank), mechanisms (3n - 6 - rank), and an orthonormal
+    basis of the self-stresses as force densities (m, states)."""
+
+    rank: int
+    self_stress_states: int
+    mechanisms: int
+    basis: FloatArray
+
+
+def count_states(structure: Structure, stiff: bool = False) -> StaticCount:
+    """Count self-stress states and mechanisms from the singular values of the equilibrium matrix."""
+    matrix = equilibrium_matrix(structure, stiff)
+    _, values, right = np.linalg.svd(matrix)
+    rank = int((values > RANK_TOLERANCE * values[0]).sum())
+    mechanisms = 3 * len(structure.nodes) - 6 - rank
+    return StaticCount(rank, matrix.shape[1] - rank, mechanisms, right[rank:].T)
+
+
+def feasible_self_stress(structure: Structure, stiff: bool = False) -> FloatArray | None:
+    """Force densities (m,) with every cable pulling, mean 1 over the cables, the weakest as strong as can be; or None.
+
+    A linear program: maximise s with A q = 0, q >= s on the cables, mean q = 1.
+    """
+    matrix = equilibrium_matrix(structure, stiff)
+    cables = matrix.shape[1] - len(structure.rods)
+    scale = np.abs(matrix).max()
+    equalities = np.zeros((len(matrix) + 1, matrix.shape[1] + 1))
+    equalities[:-1, :-1] = matrix / scale
+    equalities[-1, :cables] = 1 / cables
+    targets = np.zeros(len(equalities))
+    targets[-1] = 1.0
+    weakest = np.zeros((cables, matrix.shape[1] + 1))
+    weakest[:, :cables] = -np.eye(cables)
+    weakest[:, -1] = 1.0
+    goal = np.zeros(matrix.shape[1] + 1)
+    goal[-1] = -1.0
+    solution = linprog(goal, A_ub=weakest, b_ub=np.zeros(cables), A_eq=equalities, b_eq=targets,
+                       bounds=[(None, None)] * len(goal), method="highs")  # fmt: skip
+    if not solution.success or solution.x[-1] <= 1e-9:
+        return None
+    return solution.x[:-1]
+
+
+def out_of_balance(structure: Structure, tension: ArrayLike) -> FloatArray:
+    """(n, 3) force [N] left on each node by these cable tensions (scalar or (c,)) and the best rod forces."""
+    matrix = equilibrium_matrix(structure)
+    count = len(structure.cables)
+    densities = np.broadcast_to(tension, count) / structure.lengths(structure.cables)
+    load = matrix[:, :count] @ densities
+    rods, *_ = np.linalg.lstsq(matrix[:, count:], -load, rcond=None)
+    return (load + matrix[:, count:] @ rods).reshape(-1, 3)
+
+
+def check_balance(structure: Structure, tension: float) -> None:
+    """Raise StructureError, naming the nodes, unless this tension [N] in every elastic cable balances."""
+    left = np.linalg.norm(out_of_balance(structure, tension), axis=1)
+    bad = np.flatnonzero(left > BALANCE_TOLERANCE * max(tension, 1e-9))
+    if len(bad):
+        named = ", ".join(f"{node + 1} ({left[node]:.3g} N)" for node in bad)
+        reason = "these nodes have no self-stress" if feasible_self_stress(structure) is None else (
+            "these nodes need unequal tensions")  # fmt: skip
+        raise StructureError(
+            f"a tension of {tension:g} N in every cable leaves nodes out of balance: {named}; {reason}. "
+            "Move them, or let form finding do so (form_finding = true)"
+        )

@@ -1,0 +1,120 @@
+"""Structure: a class-1 tensegrity as arrays, and the presets.
+
+Node numbers start at 0 in arrays and at 1, as in the paper, wherever people read or write them (TOML, messages,
+column names). Lengths in m.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tensegym.arrays import FloatArray, IntArray, frozen
+from tensegym.errors import StructureError
+
+PAPER_ROD_LENGTH = 2 * 8.42 / 24  # m, printed as 0.7016
+PAPER_SPACING = 2 * 0.3125  # m between parallel rods in the paper's node table
+
+_SIX_RODS = [(1, 2), (3, 4), (5, 6), (7, 8), (9, 10), (11, 12)]
+_SIX_ROD_CABLES = [
+    (1, 5), (1, 6), (1, 9), (1, 11), (2, 7), (2, 8), (2, 9), (2, 11),
+    (3, 5), (3, 6), (3, 10), (3, 12), (4, 7), (4, 8), (4, 10), (4, 12),
+    (5, 11), (5, 12), (6, 9), (6, 10), (7, 11), (7, 12), (8, 9), (8, 10),
+]  # fmt: skip
+_PAPER_STIFF_CABLES = [(3, 7), (4, 9), (5, 10), (6, 2), (11, 8), (12, 1)]  # active end, where the drive sits, first
+
+
+@dataclass(frozen=True)
+class Structure:
+    """Nodes and what joins them.
+
+    nodes: (n, 3) coordinates [m]. rods: (r, 2) node indices, every node on exactly one rod (class 1).
+    cables: (c, 2) elastic cables. stiff_cables: (w, 2) cables wound by drives, the drive's end first.
+
+    Raises StructureError, naming nodes counted from 1, for anything else.
+    """
+
+    nodes: FloatArray
+    rods: IntArray
+    cables: IntArray
+    stiff_cables: IntArray
+
+    def __post_init__(self) -> None:
+        nodes = np.array(self.nodes, dtype=float)
+        if nodes.ndim != 2 or nodes.shape[1] != 3 or len(nodes) < 2:
+            raise StructureError(f"nodes have shape {nodes.shape}; give one row of x, y, z per node")
+        if not np.isfinite(nodes).all():
+            bad = int(np.argwhere(~np.isfinite(nodes))[0, 0]) + 1
+            raise StructureError(f"node {bad} is {nodes[bad - 1].tolist()}; coordinates must be finite numbers in m")
+        object.__setattr__(self, "nodes", frozen(nodes))
+        for name in ("rods", "cables", "stiff_cables"):
+            object.__setattr__(self, name, _pairs(name, getattr(self, name), nodes))
+        uses = np.bincount(self.rods.ravel(), minlength=len(nodes))
+        if (uses != 1).any():
+            bad = int(np.flatnonzero(uses != 1)[0])
+            raise StructureError(
+                f"node {bad + 1} is on {uses[bad]} rods; in a class-1 tensegrity each node ends exactly one rod"
+            )
+
+    @cached_property
+    def rod_lengths(self) -> FloatArray:
+        """(r,) [m]"""
+        return frozen(self.lengths(self.rods))
+
+    def lengths(self, pairs: ArrayLike) -> FloatArray:
+        """Distances between the nodes of each pair: (p, 2) -> (p,) [m]."""
+        pairs = np.asarray(pairs, dtype=np.int64).reshape(-1, 2)
+        return np.linalg.norm(self.nodes[pairs[:, 1]] - self.nodes[pairs[:, 0]], axis=1)
+
+    def with_nodes(self, nodes: ArrayLike) -> Structure:
+        """The same members on other node positions (n, 3) [m]."""
+        return Structure(np.asarray(nodes, dtype=float), self.rods, self.cables, self.stiff_cables)
+
+
+def _pairs(name: str, pairs: ArrayLike, nodes: FloatArray) -> IntArray:
+    array = np.array(pairs, dtype=np.int64).reshape(-1, 2) if np.size(pairs) else np.zeros((0, 2), dtype=np.int64)
+    seen: set[frozenset[int]] = set()
+    for a, b in array:
+        member = f"{name} member {a + 1}-{b + 1}"
+        if not (0 <= a < len(nodes) and 0 <= b < len(nodes)):
+            raise StructureError(f"{member} names a node outside 1..{len(nodes)}")
+        if a == b:
+            raise StructureError(f"{member} joins node {a + 1} to itself; give two different nodes")
+        if np.linalg.norm(nodes[b] - nodes[a]) < 1e-6:
+            raise StructureError(f"{member} has no length: nodes {a + 1} and {b + 1} coincide")
+        if frozenset((a, b)) in seen:
+            raise StructureError(f"{member} is listed twice")
+        seen.add(frozenset((a, b)))
+    return frozen(array)
+
+
+def _six_rod_nodes(rod_length: float, spacing: float) -> FloatArray:
+    """The paper's node table (12, 3) for any rod length and spacing of parallel rods [m]."""
+    h, d = rod_length / 2, spacing / 2
+    return np.array(
+        [(-d, -h, 0), (-d, h, 0), (d, -h, 0), (d, h, 0), (0, -d, -h), (0, -d, h),
+         (0, d, -h), (0, d, h), (-h, 0, d), (h, 0, d), (-h, 0, -d), (h, 0, -d)]
+    )  # fmt: skip
+
+
+def six_rod(rod_length: float = PAPER_ROD_LENGTH, spacing: float | None = None) -> Structure:
+    """The six-rod robot: the paper's members; parallel rods L/2 apart, where equal cable tensions balance.
+
+    The paper's own spacing (``spacing=PAPER_SPACING``, 0.8907 L) has no self-stress.
+    """
+    nodes = _six_rod_nodes(rod_length, rod_length / 2 if spacing is None else spacing)
+    return Structure(
+        nodes,
+        np.array(_SIX_RODS) - 1,
+        np.array(_SIX_ROD_CABLES) - 1,
+        np.array(_PAPER_STIFF_CABLES) - 1,
+    )
+
+
+def paper() -> Structure:
+    """The six-rod robot on the paper's node table, as printed."""
+    return six_rod(0.7016, PAPER_SPACING)
+

@@ -1,0 +1,55 @@
+import numpy as np
+import pytest
+
+from tensegym.errors import StructureError
+from tensegym.structure.structure import PAPER_SPACING, Structure, paper, six_rod
+
+
+def test_paper_nodes_are_the_printed_table():
+    nodes = paper().nodes
+    assert nodes.shape == (12, 3)
+    np.testing.assert_allclose(nodes[0], [-0.3125, -0.3508, 0])
+    np.testing.assert_allclose(nodes[11], [0.3508, 0, -0.3125])
+    np.testing.assert_allclose(paper().rod_lengths, 0.7016)
+
+
+def test_elastic_cables_are_the_24_shortest_pairs():
+    structure = six_rod(spacing=PAPER_SPACING)
+    lengths = {
+        (i, j): np.linalg.norm(structure.nodes[i] - structure.nodes[j]) for i in range(12) for j in range(i + 1, 12)
+    }
+    shortest = sorted(lengths, key=lengths.get)[:24]
+    assert set(shortest) == {tuple(sorted(c)) for c in structure.cables.tolist()}
+
+
+def test_every_node_carries_four_elastic_cables_and_one_stiff_one_starts_at_each_active_end():
+    structure = six_rod()
+    assert (np.bincount(structure.cables.ravel()) == 4).all()
+    assert sorted(structure.stiff_cables[:, 0] + 1) == [3, 4, 5, 6, 11, 12]
+
+
+PAIR = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"cables": [(0, 0)]}, "joins node 1 to itself"),
+        ({"cables": [(0, 9)]}, "outside 1..4"),
+        ({"cables": [(0, 2), (2, 0)]}, "3-1 is listed twice"),
+        ({"rods": [(0, 1)]}, "node 3 is on 0 rods"),
+        ({"rods": [(0, 1), (1, 2)]}, "node 2 is on 2 rods"),
+        ({"nodes": PAIR * [1, 1, np.nan]}, "node 1"),
+        ({"nodes": PAIR[:, :2]}, "shape (4, 2)"),
+        ({"nodes": np.array([[0, 0, 0], [1, 0, 0], [0, 0, 0], [0, 0, 1.0]])}, "nodes 1 and 3 coincide"),
+    ],
+)
+def test_refuses_what_is_no_class_1_structure(changes, words):
+    parts = {"nodes": PAIR, "rods": [(0, 1), (2, 3)], "cables": [(0, 2)], "stiff_cables": []} | changes
+    with pytest.raises(StructureError, match=words.replace("(", r"\(").replace(")", r"\)")):
+        Structure(**parts)
+
+
+def test_arrays_cannot_be_written():
+    with pytest.raises(ValueError, match="read-only"):
+        six_rod().nodes[0, 0] = 1.0
