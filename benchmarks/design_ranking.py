@@ -26,7 +26,7 @@ from tqdm import tqdm
 
 from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import as_design, design_to_dict
-from tensegym.envs.variation import variation
+from tensegym.design.variation import variation
 from tensegym.report import table
 from tensegym.search.confirm import FIRST_SEED, TIME_STEP
 from tensegym.search.engine import JoblibEngine

@@ -12,17 +12,17 @@ import numpy as np
 from gymnasium import spaces
 from gymnasium.utils import EzPickle
 
+from tensegym.control.observation import NODE_REACH, OBSERVATIONS, observer
 from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import as_design
+from tensegym.design.variation import variation
 from tensegym.errors import DesignError, SimulationError
 from tensegym.robot.gait import GaitMeter
 from tensegym.robot.rendering import draw_in_window, render
 from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityRobot
 
 from . import CONTROL_PERIOD
-from .observation import NODE_REACH, OBSERVATIONS, observer
 from .reward import RewardWeights, reward_terms
-from .variation import variation
 
 
 class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
@@ -50,7 +50,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
     Observation ``onboard``: rod axis (6 x 3) and turn rate across the axis (6 x 3, in 5 rad/s) in the heading frame,
     as an inertial unit on each rod reports them, then drive angle, speed and current.
 
-    With ``vary``, which maps fields of the design to ranges (see `tensegym.envs.variation`), the robot is another one
+    With ``vary``, which maps fields of the design to ranges (see `tensegym.design.variation`), the robot is another one
     every ``episodes_per_design`` episodes and at every seeded reset: drawn uniformly, refused ones again. Either
     observation then ends with where the design lies in each range, -1 to 1. With 0 episodes the design stays as given.
 

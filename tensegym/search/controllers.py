@@ -97,8 +97,8 @@ def _tips() -> list[Tip]:
 
 def _learned(robot: TensegrityRobot, policy: str, direction: FloatArray) -> Callable[[], FloatArray]:
     """Feedback (w,) of a policy: its commands from -1/2 to 1/2, as the quadratic form was fitted to."""
-    from tensegym.envs.observation import observer
-    from tensegym.envs.variation import variation
+    from tensegym.control.observation import observer
+    from tensegym.design.variation import variation
     from tensegym.train.controllers import policy_controller
 
     env = policy_controller(policy).env

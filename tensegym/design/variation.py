@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from tensegym.arrays import FloatArray
-from tensegym.design.design import RobotDesign
 from tensegym.errors import DesignError, StructureError
+
+from .design import RobotDesign
 
 TRIES = 100  # draws in a row that may all be refused before there is taken to be no sound design in the ranges
 

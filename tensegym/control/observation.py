@@ -9,10 +9,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
+from tensegym.design.variation import Variation
 from tensegym.physics import drives
 from tensegym.robot.robot import SPEED_BOUND, TensegrityRobot
-
-from .variation import Variation
 
 
 @dataclass(frozen=True)

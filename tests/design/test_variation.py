@@ -11,8 +11,8 @@ from stable_baselines3.common.env_checker import check_env
 
 from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import as_design, design_to_dict
+from tensegym.design.variation import Range, variation
 from tensegym.envs.rolling import RollingEnv
-from tensegym.envs.variation import Range, variation
 from tensegym.errors import DesignError
 from tensegym.search.problem import load_problem
 from tensegym.train.config import load_config
