@@ -1,0 +1,53 @@
+"""Figures for files: matplotlib without a window, imported when the first figure is made."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+
+def require_matplotlib() -> None:
+    """Raise ModuleNotFoundError now, before a command has worked or written anything, where nothing can be drawn."""
+    import matplotlib  # noqa: F401
+
+
+def new_figure(
+    rows: int = 1, columns: int = 1, *, size: tuple[float, float], layout: str = "constrained", **options: Any
+) -> tuple[Any, Any]:
+    """A figure and its axes: one, (n,) or (rows, columns) of them, as ``Figure.subplots`` squeezes.
+
+    The figure belongs to no window and to no list of open figures, so nothing has to be closed.
+
+    Args:
+        rows, columns: of axes.
+        size: width and height [inch].
+        layout: constrained or tight.
+        options: for ``Figure.subplots`` (sharex, squeeze, ...).
+
+    Raises:
+        ModuleNotFoundError: without matplotlib.
+    """
+    require_matplotlib()
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=size, layout=layout)
+    return figure, figure.subplots(rows, columns, **options)
+
+
+def save(figure: Any, path: Path, dpi: int = 110) -> None:
+    """Write the figure in the format that the name of ``path`` ends in; the file is whole or not there."""
+    fresh = path.with_name(path.name + ".tmp")
+    try:
+        figure.savefig(fresh, dpi=dpi, format=path.suffix[1:] or "png")
+        os.replace(fresh, path)
+    finally:
+        fresh.unlink(missing_ok=True)
+
+
+def save_pixels(pixels: Any, path: Path) -> None:
+    """Write a picture (height, width, 3), uint8, as it is."""
+    require_matplotlib()
+    from matplotlib.image import imsave
+
+    imsave(path, pixels)
