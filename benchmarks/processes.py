@@ -17,7 +17,8 @@ from environment import ARGUMENTS, EPISODE, ROBOTS, make_single, stepper
 from stable_baselines3.common.vec_env import SubprocVecEnv, VecMonitor, VecNormalize
 from timing import Row, in_turn, row
 
-from tensegym.envs.batch import Processes, cores
+from tensegym.envs.batch import Processes
+from tensegym.processes import cores
 from tensegym.train.config import load_config
 from tensegym.train.ppo import _new_model
 from tensegym.train.vec_env import RollingVecEnv
@@ -27,8 +28,8 @@ def worker_seconds(env: RollingVecEnv) -> float:
     """Processor time that the workers of a batch have taken (proc(5): fields utime and stime)."""
     batch, ticks = env.batch, 0
     assert isinstance(batch, Processes)
-    for worker in batch._workers:
-        fields = Path(f"/proc/{worker.pid}/stat").read_text().rsplit(")", 1)[1].split()
+    for worker in batch.workers:
+        fields = Path(f"/proc/{worker.process.pid}/stat").read_text().rsplit(")", 1)[1].split()
         ticks += int(fields[11]) + int(fields[12])
     return ticks / os.sysconf("SC_CLK_TCK")
 

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-import signal
 from collections.abc import Sequence
 from itertools import chain, pairwise
-from multiprocessing.connection import Connection
 from typing import Any
 
 import numpy as np
 from gymnasium import spaces
 
-from tensegym.errors import DesignError, SimulationError
+from tensegym.errors import DesignError
+from tensegym.processes import Worker, call_all, cores
 
 from .rolling import RollingEnv
 
@@ -77,54 +74,30 @@ class Batch:
 class Processes:
     """A batch whose environments are dealt over worker processes; what they do does not depend on how many there are.
 
-    Raises in this process what a worker raised, and SimulationError when one died without a word.
+    Raises in this process what a worker raised, and WorkerDied when one ended without a word.
     """
 
     def __init__(self, count: int, processes: int, max_episode_steps: int | None, arguments: dict[str, Any]) -> None:
-        context: Any = multiprocessing.get_context("forkserver" if hasattr(os, "fork") else "spawn")
         ends = np.linspace(0, count, processes + 1).round().astype(int).tolist()
         self.rows = [slice(first, last) for first, last in pairwise(ends)]
-        self._pipes: list[Connection] = []
-        self._workers = []
-        for rows in self.rows:
-            ours, theirs = context.Pipe()
-            work = (theirs, rows.stop - rows.start, max_episode_steps, arguments)
-            worker = context.Process(target=_work, args=work, daemon=True)
-            worker.start()
-            theirs.close()
-            self._pipes.append(ours)
-            self._workers.append(worker)
+        self.workers = [Worker(Batch, rows.stop - rows.start, max_episode_steps, arguments) for rows in self.rows]
         try:
-            self.spaces: tuple[spaces.Box, spaces.Box] = self._answers(
-                'did not start; a script makes environments under `if __name__ == "__main__":`, or takes processes=1'
-            )[0]
+            for worker in self.workers:
+                worker.started()
         except BaseException:
             self.close()
             raise
+        self.spaces: tuple[spaces.Box, spaces.Box] = (
+            self.attributes("observation_space")[0], self.attributes("action_space")[0],
+        )  # fmt: skip
 
-    def _answers(self, ended: str = "has died") -> list[Any]:
-        """One of every worker; all are taken before an error among them is raised, or the next would be out of turn."""
-        try:
-            answers = [pipe.recv() for pipe in self._pipes]
-        except (EOFError, ConnectionError):
-            raise SimulationError(f"a process that steps environments {ended}") from None
-        for answer in answers:
-            if isinstance(answer, Exception):
-                raise answer
-        return answers
-
-    def _ask(self, method: str, *by_row: Any, options: Any = None) -> list[Any]:
-        """Call a method of all workers' batches at a time: with its rows of each of ``by_row``, or with ``options``."""
-        try:
-            for pipe, rows in zip(self._pipes, self.rows, strict=True):
-                pipe.send((method, [part[rows] for part in by_row] + ([] if options is None else [options])))
-        except ConnectionError:
-            raise SimulationError("a process that steps environments has died") from None
-        return self._answers()
+    def _ask(self, method: str, *by_row: Any, options: tuple[Any, ...] = ()) -> list[Any]:
+        """Call a method of all workers' batches at a time: with its rows of each of ``by_row``, and ``options``."""
+        return call_all(self.workers, method, [(*(part[rows] for part in by_row), *options) for rows in self.rows])
 
     def reset(self, seeds: Sequence[int | None], options: dict[str, Any] | None) -> tuple[np.ndarray, list[dict]]:
         """As Batch.reset."""
-        observations, infos = zip(*self._ask("reset", list(seeds), options=options or {}), strict=True)
+        observations, infos = zip(*self._ask("reset", list(seeds), options=(options,)), strict=True)
         return np.concatenate(observations), list(chain(*infos))
 
     def step(self, actions: np.ndarray) -> Steps:
@@ -139,37 +112,13 @@ class Processes:
 
     def attributes(self, name: str) -> list[Any]:
         """As Batch.attributes."""
-        return list(chain(*self._ask("attributes", options=name)))
+        return list(chain(*self._ask("attributes", options=(name,))))
 
     def close(self) -> None:
-        for pipe in self._pipes:
-            pipe.close()  # at which the worker ends
-        for worker in self._workers:
-            worker.join()
-
-
-def _work(pipe: Connection, count: int, max_episode_steps: int | None, arguments: dict[str, Any]) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that asks; this one ends with its pipe
-    try:
-        batch = Batch(count, max_episode_steps, arguments)
-        pipe.send(batch.spaces)
-    except Exception as error:
-        pipe.send(error)
-        return
-    while True:
-        try:
-            method, parts = pipe.recv()
-        except EOFError:
-            return
-        try:
-            pipe.send(getattr(batch, method)(*parts))
-        except Exception as error:  # bad input, and the environments are as they were
-            pipe.send(error)
-
-
-def cores() -> int:
-    """Cores this process may run on."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+        for worker in self.workers:
+            worker.pipe.close()  # they end side by side
+        for worker in self.workers:
+            worker.close()
 
 
 def make_batch(

@@ -86,7 +86,7 @@ def test_bad_input_is_an_error_here_and_leaves_the_processes_at_work():
 def test_a_dead_process_is_an_error_and_none_is_left():
     vector = RollingVectorEnv(2, 2, **SHORT)
     vector.reset(seed=0)
-    workers = vector.batch._workers
+    workers = [worker.process for worker in vector.batch.workers]
     os.kill(workers[0].pid, signal.SIGKILL)
     workers[0].join()
     with pytest.raises(SimulationError, match="died"):
@@ -111,4 +111,4 @@ def test_a_script_without_a_main_guard_is_told_so(tmp_path):
     script.write_text('import gymnasium, tensegym\ngymnasium.make_vec("tensegym/SixRodRolling-v0", 2, processes=2)\n')
     done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True)
     assert done.returncode != 0
-    assert "did not start; a script makes environments under `if __name__" in done.stderr
+    assert "did not start; a script starts workers under `if __name__" in done.stderr
