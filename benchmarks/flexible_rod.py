@@ -6,7 +6,7 @@ Two half tubes of 14 g (8/6 mm) with 50 g at their outer ends, 0.7017 m over all
 40 x 20 x 1 mm, without mass; the ends are pressed together by dead loads along the rod. The first bending frequency:
 
     pin      sqrt((2 K - P h) / I), h from the pin to the end, I of one half about its own centre; K at P = 0, or fitted
-             at P (pin.py)
+             at P (rod_pin.py)
     beam     sqrt((EI k cot(k s / 2) - P a) / I), k^2 = P / EI, s the leaf's length, a = h - s / 2: the leaf exactly
     FEM      modes of two rigid halves on the FEM's tangent at P
     PyBullet FlexibleRobot with the leaf's fitted potential, let go from 1 deg, 0.5 ms
@@ -29,13 +29,15 @@ from scipy.linalg import eigh
 
 from tensegym.flexible import FlexibleRobot, FlexureJoint, Load
 from tensegym.flexible.stand import Vibration
+from tensegym.flexure import fem
 from tensegym.flexure.fem import newton
-from tensegym.flexure.fem import solve as fem
+from tensegym.flexure.fem.assembly import assemble
 from tensegym.flexure.fem.buckling import buckling_load
-from tensegym.flexure.fem.frame import assemble, memory
-from tensegym.flexure.hinge.hinge import Hinge, Material
+from tensegym.flexure.fem.memory import memory
+from tensegym.flexure.hinge import Hinge, Material
 from tensegym.flexure.hinge.presets import leaf_spring
-from tensegym.flexure.models.joint import Joint, fit_joint
+from tensegym.flexure.models.joint import Joint
+from tensegym.flexure.models.joint_fit import fit_joint
 from tensegym.flexure.models.rod_pin import rod_pin, rod_states
 from tensegym.report import table
 

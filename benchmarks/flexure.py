@@ -22,14 +22,14 @@ from functools import partial
 
 import numpy as np
 
+from tensegym.flexure import fem
 from tensegym.flexure.fem import newton
-from tensegym.flexure.fem import solve as fem
-from tensegym.flexure.hinge.hinge import Hinge
-from tensegym.flexure.hinge.presets import PAPER_HINGES, preset
+from tensegym.flexure.fem.path import sweep
+from tensegym.flexure.hinge import PAPER_HINGES, Hinge, preset
 from tensegym.flexure.models import potential_kernel as kernel
-from tensegym.flexure.models.joint import fit_joint
+from tensegym.flexure.models.joint_fit import fit_joint
 from tensegym.flexure.models.potential import Potential
-from tensegym.flexure.models.timing import POINTS, best_of, sweep_times
+from tensegym.flexure.models.sweep_times import POINTS, best_of, sweep_times
 from tensegym.report import table
 
 ANGLE = np.radians(30.0)
@@ -114,11 +114,11 @@ def fastest_exudyn(hinge: Hinge, moment: float, elements: int) -> Run:
 def our_sweep(hinge: Hinge, elements: int) -> Run:
     """Ours, warm."""
     mesh = fem.mesh_of(hinge, elements)
-    asks = np.zeros((POINTS, 8))
-    asks[:, newton.THETA] = ANGLE * np.arange(1, POINTS + 1) / POINTS
-    asks[:, newton.WM] = 1.0
-    results = newton.sweep(mesh, newton.ROTATION, asks, False, False)[0]
-    seconds = best_of(lambda: newton.sweep(mesh, newton.ROTATION, asks, False, False), 20)
+    cases = np.zeros((POINTS, 8))
+    cases[:, newton.THETA] = ANGLE * np.arange(1, POINTS + 1) / POINTS
+    cases[:, newton.WM] = 1.0
+    results = sweep(mesh, newton.ROTATION, cases, False, False)[0]
+    seconds = best_of(lambda: sweep(mesh, newton.ROTATION, cases, False, False), 20)
     return Run(results[-1, 1:3], float(results[-1, 0]), seconds)
 
 

@@ -34,8 +34,9 @@ from tensegym.errors import SimulationError
 from tensegym.flexible.flexible_robot import FlexibleRobot
 from tensegym.flexible.flexure_joint import FlexureJoint
 from tensegym.flexible.stand import ARM, UPRIGHT, arm_state, pull
-from tensegym.flexure.hinge.presets import PAPER_HINGES, preset
-from tensegym.flexure.models.joint import Joint, fit_joint
+from tensegym.flexure.hinge import PAPER_HINGES, preset
+from tensegym.flexure.models.joint import Joint
+from tensegym.flexure.models.joint_fit import fit_joint
 from tensegym.flexure.models.potential_kernel import stiffness, wrench
 from tensegym.report import table
 

@@ -7,7 +7,8 @@ Prints two tables. First the clean held-out error of the potential that ``fit_no
 of each of the paper's hinges, with noise of 0.05 mm on x and on y and 0.5 % of the 30-deg moment on the torque: RMS
 over 300 random wrenches, torque in % of the 30-deg moment, each the worst of all noise seeds. Then the largest errors
 of angle and of tip (in % of the arm's length) of ``sight``, which `tensegym flexure track` runs on every picture, over
-random poses drawn by tests/flexure/stand_pictures.py at four sizes under four conditions, the same poses in every cell.
+random poses drawn by tests/flexure/measured/stand_pictures.py at four sizes under four conditions, the same poses in
+every cell.
 """
 
 from __future__ import annotations
@@ -24,17 +25,15 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "flexure"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "flexure" / "measured"))
 
 from stand_pictures import ARM_MM, Picture
 
 from tensegym.flexure.fem.sampling import default_box, fit_states, held_out_states, moment_at
-from tensegym.flexure.hinge.hinge import Hinge
-from tensegym.flexure.hinge.presets import PAPER_HINGES, preset
-from tensegym.flexure.hinge.states import States
+from tensegym.flexure.hinge import PAPER_HINGES, Hinge, States, preset
 from tensegym.flexure.measured.noisy_fit import fit_noisy
 from tensegym.flexure.measured.sighting import sight
-from tensegym.flexure.models.errors_table import model_errors
+from tensegym.flexure.models.model_error import model_errors
 from tensegym.report import table
 
 COUNTS = (60, 150, 600)

@@ -10,7 +10,7 @@ import numpy as np
 from tensegym.errors import DesignError
 
 if TYPE_CHECKING:
-    from tensegym.flexure.hinge.hinge import Hinge
+    from tensegym.flexure.hinge import Hinge
 
 
 def bounded(low: float, high: float, default: float, unit: str, what: str, *, open_low: bool = False):
@@ -185,8 +185,7 @@ class RodFlexure(Checked):
 
     def geometry(self) -> Hinge:
         """The hinge, for the finite elements. Raises FlexureError for an unknown one or sizes that make none."""
-        from tensegym.flexure.hinge.hinge import Material
-        from tensegym.flexure.hinge.presets import preset
+        from tensegym.flexure.hinge import Material, preset
 
         sizes = {"length": self.length, "width": self.width, "thickness": self.thickness}
         if self.height is not None:

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tensegym.arrays import FloatArray
 from tensegym.bullet import Articulated
-from tensegym.flexure.hinge.states import FloatArray
 
 from .step_kernel import add_load
 from .tree import Tree

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
+from tensegym.arrays import FloatArray
 from tensegym.bullet import Articulated, World
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.states import FloatArray
 
 from . import step_kernel as kernel
 from .energies import Energies

@@ -6,9 +6,9 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
+from tensegym.arrays import FloatArray
 from tensegym.bullet import Articulated, World
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.states import FloatArray
 
 from .urdf_rewrite import Chain, axis_of, base_link, parse, put_chain, revolute_joint, to_text
 

@@ -23,9 +23,10 @@ from typing import Any
 
 from tensegym.bullet import packaged_urdf
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.hinge_file import as_hinge
-from tensegym.flexure.models.joint import Joint, fit_joint
+from tensegym.flexure.hinge import as_hinge
+from tensegym.flexure.models.joint import Joint
 from tensegym.flexure.models.joint_file import load_joint
+from tensegym.flexure.models.joint_fit import fit_joint
 
 from .flexible_robot import FlexibleRobot
 from .flexure_joint import FlexureJoint

@@ -10,9 +10,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.fem.sampling import Box
-from tensegym.flexure.hinge.states import FloatArray
+from tensegym.flexure.hinge import Box
 from tensegym.flexure.models.joint import Joint
 from tensegym.flexure.models.joint_file import load_joint
 from tensegym.flexure.models.torsion_spring import TorsionSpring

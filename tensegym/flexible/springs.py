@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.fem.sampling import Box
-from tensegym.flexure.hinge.states import FloatArray
+from tensegym.flexure.hinge import Box
 from tensegym.flexure.models.planar_spring import PlanarSpring
 from tensegym.flexure.models.potential import Potential
 from tensegym.flexure.models.stiffness_diagram import StiffnessDiagram

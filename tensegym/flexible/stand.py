@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
+from tensegym.arrays import FloatArray
 from tensegym.bullet import packaged_urdf
 from tensegym.errors import FlexureError, SimulationError
-from tensegym.flexure.hinge.states import FloatArray
 from tensegym.flexure.models.joint import Joint, Model
 
 from .flexible_robot import FlexibleRobot

@@ -7,9 +7,9 @@ from typing import Literal
 
 import numpy as np
 
+from tensegym.arrays import FloatArray
 from tensegym.bullet import Articulated
 from tensegym.errors import SimulationError
-from tensegym.flexure.hinge.states import FloatArray
 
 from . import contacts
 from . import step_kernel as kernel

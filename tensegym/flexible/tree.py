@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from tensegym.arrays import FloatArray
 from tensegym.bullet import FIXED, Articulated
-from tensegym.flexure.hinge.states import FloatArray
 
 IntArray = NDArray[np.int64]
 

@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.states import FloatArray
 
 
 @dataclass(frozen=True)

@@ -16,11 +16,10 @@ from tensegym.flexible import FlexibleRobot, FlexureJoint, Load
 from tensegym.flexible import spring_kernel as kernel
 from tensegym.flexible.flexure_file import load_robot
 from tensegym.flexible.springs import spring_table
-from tensegym.flexure.fem import solve as fem
-from tensegym.flexure.fem.sampling import Box
-from tensegym.flexure.hinge.presets import PAPER_HINGES, preset
-from tensegym.flexure.models.joint import fit_joint
+from tensegym.flexure import fem
+from tensegym.flexure.hinge import PAPER_HINGES, Box, preset
 from tensegym.flexure.models.joint_file import save_joint
+from tensegym.flexure.models.joint_fit import fit_joint
 from tensegym.flexure.models.planar_spring import PlanarSpring
 from tensegym.flexure.models.potential_kernel import wrench
 from tensegym.flexure.models.torsion_spring import TorsionSpring

@@ -7,8 +7,8 @@ import pytest
 
 from tensegym.errors import FlexureError
 from tensegym.flexible.stand import pull, release
-from tensegym.flexure.hinge.presets import preset
-from tensegym.flexure.models.joint import fit_joint
+from tensegym.flexure.hinge import preset
+from tensegym.flexure.models.joint_fit import fit_joint
 from tests.conftest import assert_refused
 
 

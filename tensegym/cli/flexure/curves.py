@@ -1,4 +1,4 @@
-"""`tensegym flexure curves`: pictures and one CSV of what hinges and their models do."""
+"""`tensegym flexure curves`: figures and one CSV of what hinges and their models do."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ import numpy as np
 
 from tensegym.errors import InputError
 from tensegym.files import replace_file
-from tensegym.flexure import figures as pictures
+from tensegym.flexure.fem.arm_sweep import arm_sweep
 from tensegym.flexure.fem.sampling import held_out_states
-from tensegym.flexure.hinge.hinge import Hinge
-from tensegym.flexure.hinge.presets import PAPER_HINGES
-from tensegym.flexure.hinge.states import States
+from tensegym.flexure.hinge import PAPER_HINGES, Hinge, States
 from tensegym.flexure.measured.measured_file import read_measured
-from tensegym.flexure.models.joint import Joint, arm_sweep, fit_joint
+from tensegym.flexure.models.joint import Joint
+from tensegym.flexure.models.joint_fit import fit_joint
+from tensegym.plotting import require_matplotlib
 from tensegym.report import Report, table
 
+from . import figures
 from .hinge_options import BoxOptions, HingeOptions
 
 
@@ -39,20 +40,21 @@ class Curves:
     def run(self) -> Report:
         if not self.out.parent.is_dir():
             raise FileNotFoundError(f"no folder {self.out.parent} to make {self.out.name} in")
+        require_matplotlib()
         angle, force = self.box.max_angle, self.box.max_force_N
         hinges = {name: self.options.apply(name) for name in self.hinges}
         measured = self._measured(hinges)
         joints = {name: fit_joint(h, max_angle=angle, max_force=force) for name, h in hinges.items()}
         tests = {name: held_out_states(joint.hinge, joint.box) for name, joint in joints.items() if joint.hinge}
         self.out.mkdir(exist_ok=True)
-        pictures.hinges_picture([joint.hinge for joint in joints.values() if joint.hinge], self.out / "hinges.png")
-        pictures.torque_picture(joints, self.out / "torque.png", measured)
-        pictures.drift_picture(joints, self.out / "drift.png")
+        figures.draw_hinges([joint.hinge for joint in joints.values() if joint.hinge], self.out / "hinges.png")
+        figures.draw_torque(joints, self.out / "torque.png", measured)
+        figures.draw_drift(joints, self.out / "drift.png")
         made = ["hinges.png", "torque.png", "drift.png", "errors.png", "curves.csv"]
         if any("paper" in joint.models for joint in joints.values()):
-            pictures.stiffness_picture(joints, self.out / "stiffness.png")
+            figures.draw_stiffness(joints, self.out / "stiffness.png")
             made.append("stiffness.png")
-        pictures.errors_picture(joints, tests, self.out / "errors.png")
+        figures.draw_errors(joints, tests, self.out / "errors.png")
         count = write_curves(joints, self.out / "curves.csv")
         text = "\n".join(joint.source for joint in joints.values())
         text += "\n" + table(["file"], [[str(self.out / name)] for name in made])

@@ -10,12 +10,13 @@ from typing import Any, Literal
 import tyro
 
 from tensegym.errors import InputError
-from tensegym.flexure.figures import LABELS
+from tensegym.flexure.hinge import symmetry_of
 from tensegym.flexure.hinge.presets import MM
 from tensegym.flexure.measured.measured_file import ARM_LENGTH, PAPER_LENGTH
 from tensegym.flexure.measured.measured_report import fit_data
-from tensegym.flexure.models.joint import Joint, fit_joint, symmetry_of
+from tensegym.flexure.models.joint import MODELS, Joint
 from tensegym.flexure.models.joint_file import joint_to_dict, save_joint
+from tensegym.flexure.models.joint_fit import fit_joint
 from tensegym.report import Report, table
 
 from .hinge_options import BoxOptions, HingeOptions
@@ -81,7 +82,7 @@ class Fit:
 
 def error_rows(joint: Joint) -> list[list[Any]]:
     """Rows of a table of the joint's errors."""
-    return [[LABELS[name], f"{1e6 * e.tip_rms:.3g}", f"{1e6 * e.tip_max:.3g}", f"{100 * e.moment_rms:.3g}",
+    return [[MODELS[name], f"{1e6 * e.tip_rms:.3g}", f"{1e6 * e.tip_max:.3g}", f"{100 * e.moment_rms:.3g}",
              f"{100 * e.moment_max:.3g}", e.lost] for name, e in joint.errors.items()]  # fmt: skip
 
 

@@ -6,9 +6,8 @@ import math
 from dataclasses import dataclass, replace
 
 from tensegym.errors import InputError
-from tensegym.flexure.hinge.hinge import Hinge
-from tensegym.flexure.hinge.hinge_file import as_hinge
-from tensegym.flexure.hinge.presets import MM, PRESETS, preset
+from tensegym.flexure.hinge import PRESETS, Hinge, as_hinge, preset
+from tensegym.flexure.hinge.presets import MM
 
 _LENGTHS = ("length", "height", "width", "thickness", "rib", "arm")
 

@@ -9,12 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import InputError
 from tensegym.files import replace_file
-from tensegym.flexure.hinge.hinge import Hinge
-from tensegym.flexure.hinge.states import FloatArray
-from tensegym.flexure.models.joint import MODELS, fit_joint
+from tensegym.flexure.hinge import Hinge
+from tensegym.flexure.models.joint import MODELS
 from tensegym.flexure.models.joint_file import load_joint
+from tensegym.flexure.models.joint_fit import fit_joint
 from tensegym.flexure.models.load_solver import Answer, solve_fem, solve_model
 from tensegym.report import Report, table
 

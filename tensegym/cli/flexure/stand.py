@@ -15,15 +15,18 @@ from scipy.interpolate import CubicSpline
 from tensegym.errors import FlexureError, InputError
 from tensegym.files import replace_file
 from tensegym.flexible.stand import ARM, LENGTH, Pull, Vibration, pull, release
-from tensegym.flexible.stand_figures import figure_5, save_picture, vibration_picture
-from tensegym.flexure.hinge.states import States
+from tensegym.flexure.fem.arm_sweep import arm_sweep
+from tensegym.flexure.hinge import States, symmetry_of
 from tensegym.flexure.measured.base_frame import frame_at_rest
 from tensegym.flexure.measured.measured_file import read_measured
 from tensegym.flexure.measured.measured_fit import fit_measured
-from tensegym.flexure.models.joint import Joint, arm_sweep, fit_joint, symmetry_of
+from tensegym.flexure.models.joint import Joint
+from tensegym.flexure.models.joint_fit import fit_joint
+from tensegym.plotting import require_matplotlib, save_pixels
 from tensegym.report import Report, table
 
 from .hinge_options import BoxOptions, HingeOptions
+from .stand_figures import draw_figure_5, draw_vibration
 from .track import sight_file
 
 
@@ -62,6 +65,7 @@ class Stand:
             raise InputError(f"points = {self.points}, width = {self.width}; give 3 points or more, 200 to 2000 px")
         if not (0 < self.seconds < 1000 and 0 < self.dt_ms <= 4 and 0 <= self.loss_time_ms < 1000):
             raise InputError("give seconds in (0, 1000), dt_ms in (0, 4], loss_time_ms in [0, 1000)")
+        require_matplotlib()
         hinge = self.options.apply(self.hinge)
         joint = fit_joint(hinge, max_angle=self.box.max_angle, max_force=self.box.max_force_N, held_out=0)
         if not 0 < math.radians(self.release_deg) <= joint.box.max_angle:
@@ -74,8 +78,8 @@ class Stand:
         measured = self._measure(pulled)
         fitted, note = self._fit(measured, hinge)
         fem = arm_sweep(hinge, joint.box.max_angle)
-        figure_5(hinge.name, fem, pulled, measured, fitted, self.out / "fig5.png")
-        vibration_picture(hinge.name, swing, self.out / "vibration.png")
+        draw_figure_5(hinge.name, fem, pulled, measured, fitted, self.out / "fig5.png")
+        draw_vibration(hinge.name, swing, self.out / "vibration.png")
         self._write("stand.csv", ["theta_rad", "x_mm", "y_mm", "force_N"],
                     np.column_stack([pulled.poses[:, 2], 1e3 * pulled.poses[:, :2], pulled.force]))  # fmt: skip
         self._write("vibration.csv", ["t_s", "theta_rad", "energy_mJ"],
@@ -86,12 +90,12 @@ class Stand:
         """Write the pictures, track them, write measured.csv and read it back."""
         assert pulled.rest is not None
         folder = self.out / "pictures"
-        save_picture(pulled.rest, folder / "rest.png")
+        save_pixels(pulled.rest, folder / "rest.png")
         frame = frame_at_rest(sight_file(folder / "rest.png"), ARM, LENGTH)
         rows = []
         for k, picture in enumerate(pulled.pictures):
             path = folder / f"{k:03d}.png"
-            save_picture(picture, path)
+            save_pixels(picture, path)
             theta, tip = frame.pose(sight_file(path), ARM)
             rows.append([path.name, math.degrees(theta), *(1e3 * tip), pulled.force[k]])
         self._write("measured.csv", ["image", "angle_deg", "x_mm", "y_mm", "force_N"], rows)

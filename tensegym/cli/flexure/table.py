@@ -7,15 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from tensegym.flexure.figures import LABELS
-from tensegym.flexure.hinge.presets import PAPER_HINGES
-from tensegym.flexure.models.joint import HELD_OUT_SEED, TABLE_ANGLE, Joint, arm_sweep, fit_joint
+from tensegym.flexure.fem.arm_sweep import arm_sweep
+from tensegym.flexure.fem.sampling import HELD_OUT_SEED
+from tensegym.flexure.hinge import PAPER_HINGES
+from tensegym.flexure.models.joint import MODELS, Joint
 from tensegym.flexure.models.joint_file import joint_to_dict
+from tensegym.flexure.models.joint_fit import fit_joint
 from tensegym.flexure.models.passivity import loop_work
 from tensegym.flexure.models.potential import Potential
 from tensegym.flexure.models.pseudo_rigid import planar_placement, torsion_lambda
 from tensegym.flexure.models.stiffness_diagram import StiffnessDiagram
-from tensegym.flexure.models.timing import sweep_times
+from tensegym.flexure.models.sweep_times import sweep_times
 from tensegym.report import Report, table
 
 from .fit import ERROR_HEADER, error_rows
@@ -67,7 +69,7 @@ class Table:
                            f"{times.fem / times.potential:.3g}"])  # fmt: skip
             third += [[name, *row] for row in error_rows(joint)]
             work = loops(joint, self.loops)
-            fourth += [[name, LABELS[key], f"{w['largest']:.2g}", f"{w['median']:.2g}"] for key, w in work.items()]
+            fourth += [[name, MODELS[key], f"{w['largest']:.2g}", f"{w['median']:.2g}"] for key, w in work.items()]
             errors = joint_to_dict(joint)["errors"]
             data["hinges"][name] = {"source": joint.source, "table_1": facts, "errors": errors, "loop_work": work,
                                     "table_2_s": {"fem": times.fem, "potential": times.potential, "paper": paper},
@@ -87,7 +89,7 @@ class Table:
         return Report("\n".join(texts), data)
 
 
-def table_1(joint: Joint, name: str, angle: float = TABLE_ANGLE) -> tuple[list[list[Any]], dict[str, Any]]:
+def table_1(joint: Joint, name: str, angle: float) -> tuple[list[list[Any]], dict[str, Any]]:
     """Rows and facts of Table 1 for one hinge: the paper's, ours under the reading that made it, and F2 as printed."""
     assert joint.hinge is not None
     sweep = arm_sweep(joint.hinge, min(angle, joint.box.max_angle))

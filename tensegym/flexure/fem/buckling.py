@@ -12,17 +12,19 @@ between equal parts a, and its limit of a pin with a spring as s -> 0:
 
 from __future__ import annotations
 
-import math
 from functools import lru_cache
 
 import numpy as np
 
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.hinge import Hinge
+from tensegym.flexure.hinge import Hinge
+from tensegym.flexure.hinge.ranges import check_not_negative
 
 from . import newton
-from . import solve as fem
-from .frame import Memory, Mesh, assemble, copy_state, factor, memory
+from .assembly import assemble
+from .ldl import factor
+from .memory import Memory, copy_state, memory
+from .mesh import ELEMENTS, Mesh, mesh_of
 
 ACCURACY = 1e-9  # of the load, relative
 DOUBLINGS = 60
@@ -32,19 +34,24 @@ STRAIGHT = 1e-6  # rad and hinge lengths that a straight rod may deflect by roun
 def check_parts(before: float, after: float) -> None:
     """Refuse lengths of a rod's rigid parts [m] that are not finite or negative."""
     for name, value in (("before", before), ("after", after)):
-        if not (math.isfinite(value) and value >= 0):
-            raise FlexureError(f"{name} = {value:g} m; give the length of the rod's rigid part, 0 or more")
+        check_not_negative(name, value, "m", "give the length of the rod's rigid part, 0 or more")
 
 
 @lru_cache(maxsize=256)
-def buckling_load(hinge: Hinge, before: float, after: float, elements: int = fem.ELEMENTS) -> float:
-    """Smallest compression [N] under which a straight rod with ``hinge`` in it buckles in the hinge's plane.
+def buckling_load(hinge: Hinge, before: float, after: float, elements: int = ELEMENTS) -> float:
+    """Smallest compression [N] under which a straight rod with a hinge in it buckles in the hinge's plane.
 
-    before, after: rigid parts on the hinge's base and tip [m], along its x axis. Raises FlexureError for a length out
-    of range, and for a hinge that is not symmetric about its axis: a rod with it bends from the first load on.
+    Args:
+        hinge: symmetric about its axis.
+        before, after: the rod's rigid parts on the hinge's base and tip, along its x axis [m], 0 or more.
+        elements: of a leaf as long as the hinge.
+
+    Raises:
+        FlexureError: for a length out of range, and for a hinge that is not symmetric about its axis: a rod with it
+            bends from the first load on.
     """
     check_parts(before, after)
-    mesh = fem.mesh_of(hinge, elements)
+    mesh = mesh_of(hinge, elements)
     stable, trial = memory(mesh), memory(mesh)
     # an Euler column of the softest leaf, far longer than the rod, stands under this
     rod, modulus = before + hinge.length + after, hinge.material.effective_modulus
@@ -71,9 +78,9 @@ def buckling_load(hinge: Hinge, before: float, after: float, elements: int = fem
 
 def _stands(mesh: Mesh, mem: Memory, load: float, before: float, after: float, name: str) -> bool:
     """Whether the straight rod is stable under ``load`` [N]; takes ``mem`` from a neighbouring state to that one."""
-    ask = np.zeros(8)
-    ask[newton.FX], ask[newton.ARM] = -load, after
-    found, _, _, _, _ = newton.newton(mesh, mem, newton.LOAD, ask)
+    case = np.zeros(8)
+    case[newton.FX], case[newton.ARM] = -load, after
+    found, _, _, _, _ = newton.newton(mesh, mem, newton.LOAD, case)
     if not found:  # a limit point of the straight rod
         return False
     x, y, turn = mem.poses[-1]

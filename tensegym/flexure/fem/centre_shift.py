@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from tensegym.flexure.hinge.presets import preset
-from tensegym.flexure.hinge.states import FloatArray, States
+from tensegym.arrays import FloatArray
+from tensegym.flexure.hinge import States, preset
 
-from . import solve as fem
+from .equilibrium import rotate
+from .mesh import ELEMENTS
 
 
 def centre_shift(states: States, length: float, place: float) -> FloatArray:
@@ -18,14 +19,14 @@ def centre_shift(states: States, length: float, place: float) -> FloatArray:
     return np.asarray(np.hypot(moved[:, 0] - place, moved[:, 1]))
 
 
-def crossing_shift(crossing: float, angle: float, elements: int = fem.ELEMENTS, **dimensions: float) -> float:
+def crossing_shift(crossing: float, angle: float, elements: int = ELEMENTS, **dimensions: float) -> float:
     """Shift [m] of the crossing point of a cross-spring pivot turned by a pure moment to ``angle`` [rad]."""
     hinge = preset("cross-spring", crossing=crossing, **dimensions)
-    states = fem.rotate(hinge, angle * np.arange(1, 5) / 4, elements=elements).states()
+    states = rotate(hinge, angle * np.arange(1, 5) / 4, elements=elements).states()
     return float(centre_shift(states, hinge.length, crossing * hinge.length)[-1])
 
 
-def least_shift_crossing(angle: float, elements: int = fem.ELEMENTS, **dimensions: float) -> tuple[float, float]:
+def least_shift_crossing(angle: float, elements: int = ELEMENTS, **dimensions: float) -> tuple[float, float]:
     """Crossing fraction in (0, 0.5) of least centre shift at ``angle`` [rad], and that shift [m].
 
     The known answer is near 0.13. For slender leaves of length l that cross at half angle alpha the shift begins as

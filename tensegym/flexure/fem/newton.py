@@ -1,38 +1,31 @@
-"""Newton's method under rotation or load control, and paths of states, compiled."""
+"""Newton's method for one load case, under rotation or load control, compiled."""
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
 
+from .assembly import assemble, strain_energy
 from .beam import OPTIONS
-from .chain import AX, AY, BX, BY, EA, L0, recover
-from .frame import assemble, backward, copy_state, factor, forward, memory, place_ends, strain_energy
+from .chain import AX, AY, BX, BY, recover
+from .ldl import backward, factor, forward
+from .memory import place_ends
 
-CONVERGED, BUCKLED, FAILED = 0, 1, 2
 ROTATION, LOAD = 0, 1
-# a state asked for: turn [rad]; dead force [N] and moment [N m] at the tip; direction scaled under rotation control
-# (force x, y and moment about the tip); distance of the dead force's point beyond the tip along the tip body's x [m]
+# a load case: turn [rad]; dead force [N] and moment [N m] at the tip; direction scaled under rotation control (force x,
+# y and moment about the tip); distance of the dead force's point beyond the tip along the tip body's x [m]
 THETA, FX, FY, MZ, WX, WY, WM, ARM = range(8)
 TOLERANCE = 1e-7  # largest increment [rad, element lengths]; Newton converges quadratically, so the error is its square
 ITERATIONS = 15
-# Between accepted states, so that no instability is stepped over: the turn of any body [rad], and the gap between the
-# energy gained and the work of the tip's loads by the trapezoid rule, of their size. A jump to another branch does not
-# balance; along a branch the gap falls with the square of the step.
-LARGEST_TURN, LARGEST_GAP = 0.25, 0.05
-# A branch leaves a bifurcation across the tangent: the way gone must not be this many times the tangent's guess.
-LARGEST_DETOUR, SMALLEST_DETOUR = 3.0, 1e-6
-SMALLEST_STEP = 1e-4  # of a path, where it is given up
 
 
 @njit(**OPTIONS)
-def newton(mesh, mem, mode, ask):
-    """Solve for one asked state from where ``mem`` is: (converged, multiplier, held stable, free stable, first step).
+def newton(mesh, mem, mode, case):
+    """Solve for one load case from where ``mem`` is: (converged, multiplier, held stable, free stable, first step).
 
     The first step is the largest increment of the first iteration, the tangent's guess [rad, element lengths]. Held
-    stable: a minimum of the energy at the asked turn; free stable: a minimum under the dead load.
+    stable: a minimum of the energy at the turn asked for; free stable: a minimum under the dead load.
     """
     tip = len(mesh.rest) - 1
     size = 3 * tip
@@ -42,21 +35,21 @@ def newton(mesh, mem, mode, ask):
     for iteration in range(ITERATIONS):
         inner = assemble(mesh, mem)
         turn = mem.poses[tip, 2]
-        lever_x, lever_y = ask[ARM] * math.cos(turn), ask[ARM] * math.sin(turn)
+        lever_x, lever_y = case[ARM] * math.cos(turn), case[ARM] * math.sin(turn)
         for i in range(size):
             right[i] = -right[i]
-        right[size - 3] += ask[FX]
-        right[size - 2] += ask[FY]
-        right[size - 1] += ask[MZ] + lever_x * ask[FY] - lever_y * ask[FX]
-        matrix[size - 1, size - 1] += lever_x * ask[FX] + lever_y * ask[FY]
+        right[size - 3] += case[FX]
+        right[size - 2] += case[FY]
+        right[size - 1] += case[MZ] + lever_x * case[FY] - lever_y * case[FX]
+        matrix[size - 1, size - 1] += lever_x * case[FX] + lever_y * case[FY]
         negative, last = factor(matrix)
         forward(matrix, right)
         if mode == ROTATION:
             for i in range(size):
                 step[i] = 0.0
-            step[size - 3], step[size - 2], step[size - 1] = ask[WX], ask[WY], ask[WM]
+            step[size - 3], step[size - 2], step[size - 1] = case[WX], case[WY], case[WM]
             forward(matrix, step)
-            delta = ask[THETA] - turn
+            delta = case[THETA] - turn
             multiplier = (matrix[size - 1, size - 1] * delta - right[size - 1]) / step[size - 1]
             for i in range(size - 1):
                 right[i] = (right[i] + multiplier * step[i]) / matrix[i, i]
@@ -99,146 +92,12 @@ def newton(mesh, mem, mode, ask):
 
 
 @njit(**OPTIONS)
-def settle(mesh, mem, mode, ask, multiplier):
+def settle(mesh, mem, mode, case, multiplier):
     """Note what holds a converged state, and its energy."""
     turn = mem.poses[len(mesh.rest) - 1, 2]
     scale = multiplier if mode == ROTATION else 0.0
-    lever = ask[ARM] * (math.cos(turn) * ask[FY] - math.sin(turn) * ask[FX])
-    mem.held[0] = ask[FX] + scale * ask[WX]
-    mem.held[1] = ask[FY] + scale * ask[WY]
-    mem.held[2] = ask[MZ] + scale * ask[WM] + lever
+    lever = case[ARM] * (math.cos(turn) * case[FY] - math.sin(turn) * case[FX])
+    mem.held[0] = case[FX] + scale * case[WX]
+    mem.held[1] = case[FY] + scale * case[WY]
+    mem.held[2] = case[MZ] + scale * case[WM] + lever
     mem.held[3] = strain_energy(mesh, mem)
-
-
-@njit(**OPTIONS)
-def near(mesh, mem, before):
-    """Whether two settled states are neighbours on one branch."""
-    tip = len(mesh.rest) - 1
-    for b in range(1, tip + 1):
-        if abs(mem.poses[b, 2] - before.poses[b, 2]) > LARGEST_TURN:
-            return False
-    work, size = 0.0, 0.0
-    for i in range(3):
-        share = 0.5 * (mem.held[i] + before.held[i]) * (mem.poses[tip, i] - before.poses[tip, i])
-        work += share
-        size += abs(share)
-    gain = mem.held[3] - before.held[3]
-    rounding = 1e-20 * mesh.real[0, EA] * mesh.real[0, L0] + 1e-12 * (mem.held[3] + before.held[3])
-    return abs(gain - work) <= LARGEST_GAP * (abs(gain) + size) + rounding
-
-
-@njit(**OPTIONS)
-def moved(mesh, mem, before):
-    """Largest change of any node, as ``newton`` counts increments [rad, element lengths]."""
-    largest = 0.0
-    for m in range(len(mesh.ends)):
-        _, _, count, first = mesh.ends[m]
-        for i in range(first, first + count + 1):
-            along = abs(mem.nodes[i, 0] - before.nodes[i, 0]) + abs(mem.nodes[i, 1] - before.nodes[i, 1])
-            largest = max(largest, abs(mem.nodes[i, 2] - before.nodes[i, 2]), 0.5 * along / mesh.real[m, L0])
-    return largest
-
-
-@njit(**OPTIONS)
-def path(mesh, mem, spare, mode, start, target):
-    """Follow the states between two asked ones: (status, multiplier, fraction reached, free stable).
-
-    BUCKLED: between the last stable state and a slightly larger load the tangent loses its positive definiteness (a
-    bifurcation), or no state is near any more (a limit point, or a branch across the tangent); the fraction says where.
-    """
-    done, stride = 0.0, 1.0
-    unstable = False
-    ask = np.empty(8)
-    multiplier, free = 0.0, True
-    while done < 1.0:
-        stride = min(stride, 1.0 - done)
-        end = done + stride if done + stride < 1.0 - 1e-12 else 1.0
-        for i in range(8):
-            ask[i] = start[i] + end * (target[i] - start[i])
-        copy_state(mem, spare)
-        good, factor_, held, free_, first_step = newton(mesh, mem, mode, ask)
-        if good:
-            settle(mesh, mem, mode, ask, factor_)
-            good = near(mesh, mem, spare) and moved(mesh, mem, spare) <= LARGEST_DETOUR * first_step + SMALLEST_DETOUR
-        stable = held if mode == ROTATION else free_
-        if good and stable:
-            done, multiplier, free = end, factor_, free_
-            stride *= 2
-            continue
-        unstable = unstable or good
-        copy_state(spare, mem)
-        stride /= 2
-        if stride < SMALLEST_STEP:
-            return (BUCKLED if unstable or mode == LOAD else FAILED), multiplier, done, free
-    return CONVERGED, multiplier, 1.0, free
-
-
-@njit(**OPTIONS)
-def sweep(mesh, mode, asks, from_rest, keep_nodes):
-    """Solve for every row of ``asks`` (n, 8) in turn.
-
-    ``from_rest``: each state by its own path from rest, else from the state before. Returns results (n, 8): turn, tip x
-    and y, force x and y and moment about the tip that hold it, energy, fraction of the path reached; status (n,), free
-    stability (n,), and nodes (n, k, 3) when kept.
-    """
-    count = len(asks)
-    tip = len(mesh.rest) - 1
-    mem, spare, rest = memory(mesh), memory(mesh), memory(mesh)
-    history = [memory(mesh), memory(mesh), memory(mesh)]
-    known = 0
-    results = np.full((count, 8), np.nan)
-    status, stable = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.bool_)
-    nodes = np.zeros((count if keep_nodes else 0, len(mem.nodes), 3))
-    start = np.zeros(8)
-    for i in range(count):
-        ask = asks[i]
-        if from_rest or (i > 0 and status[i - 1] != CONVERGED) or i == 0:
-            copy_state(rest, mem)
-            for j in range(8):
-                start[j] = ask[j] if j >= WX else 0.0
-            known = 0
-        state, done = FAILED, 0.0
-        multiplier, free = 0.0, False
-        if known == 3 and mode == ROTATION:  # quadratic extrapolation: saves an iteration or two on an even sweep
-            extrapolate(mesh, history[i % 3], history[(i + 1) % 3], history[(i + 2) % 3], mem)
-            good, multiplier, held, free, _ = newton(mesh, mem, mode, ask)
-            before = history[(i + 2) % 3]
-            if good and held:
-                settle(mesh, mem, mode, ask, multiplier)
-                if near(mesh, mem, before):
-                    state, done = CONVERGED, 1.0
-            if state != CONVERGED:
-                copy_state(before, mem)
-        if state != CONVERGED:
-            state, multiplier, done, free = path(mesh, mem, spare, mode, start, ask)
-        status[i], stable[i] = state, free
-        results[i, 7] = done
-        if keep_nodes:
-            for k in range(len(mem.nodes)):
-                for j in range(3):
-                    nodes[i, k, j] = mem.nodes[k, j]
-        if state != CONVERGED:
-            continue
-        if not from_rest:
-            copy_state(mem, history[i % 3])
-            known = min(known + 1, 3)
-            for j in range(8):
-                start[j] = ask[j]
-        results[i, 0], results[i, 1], results[i, 2] = mem.poses[tip, 2], mem.poses[tip, 0], mem.poses[tip, 1]
-        for j in range(4):
-            results[i, 3 + j] = mem.held[j]
-    return results, status, stable, nodes
-
-
-@njit(**OPTIONS)
-def extrapolate(mesh, oldest, older, last, mem):
-    """Quadratic extrapolation over three even steps, into ``mem``."""
-    for i in range(len(mem.poses)):
-        for j in range(3):
-            mem.poses[i, j] = 3 * (last.poses[i, j] - older.poses[i, j]) + oldest.poses[i, j]
-    for i in range(len(mem.nodes)):
-        mem.axial[i] = 3 * (last.axial[i] - older.axial[i]) + oldest.axial[i]
-        for j in range(3):
-            mem.nodes[i, j] = 3 * (last.nodes[i, j] - older.nodes[i, j]) + oldest.nodes[i, j]
-    for m in range(len(mesh.ends)):
-        place_ends(mesh, mem, m)

@@ -2,51 +2,55 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from scipy.stats import qmc
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.hinge import Hinge, positive
-from tensegym.flexure.hinge.states import FloatArray, States
+from tensegym.flexure.hinge import Box, Hinge, States
+from tensegym.flexure.hinge.ranges import check_max_angle
 
-from . import solve as fem
+from .equilibrium import rotate
+from .mesh import ELEMENTS
+from .path import CONVERGED
 
-
-@dataclass(frozen=True)
-class Box:
-    """Where a model is fitted and meant to be used: |theta| and the dead force at the tip in base axes, each axis."""
-
-    max_angle: float
-    """[rad], in (0, pi/2)."""
-    max_force: float
-    """|Fx| and |Fy| at most [N], in (0, inf)."""
-
-    def __post_init__(self) -> None:
-        if not 0 < self.max_angle < np.pi / 2:
-            raise FlexureError(f"max_angle = {self.max_angle:g} rad is outside (0, pi/2)")
-        positive("max_force", self.max_force, "N")
+HELD_OUT_SEED = 12345
 
 
-def moment_at(hinge: Hinge, angle: float, elements: int = fem.ELEMENTS) -> float:
-    """Pure moment that turns the tip by ``angle`` [rad], [N m]."""
-    solution = fem.rotate(hinge, np.array([angle]), elements=elements)
-    if solution.status[0] != fem.CONVERGED:
+def moment_at(hinge: Hinge, angle: float, elements: int = ELEMENTS) -> float:
+    """Pure moment [N m] that turns the tip by ``angle`` [rad]. Raises FlexureError where there is none."""
+    solution = rotate(hinge, np.array([angle]), elements=elements)
+    if solution.status[0] != CONVERGED:
         raise FlexureError(f"{hinge.name}: {solution.reason(0)} (pure moment up to {angle:g} rad); lower max_angle")
     return float(solution.moment[0])
 
 
 def default_box(hinge: Hinge, max_angle: float | None = None, max_force: float | None = None) -> Box:
-    """The hinge's own range of rotation, and forces up to M / L with M the pure moment at the largest rotation."""
+    """The hinge's own range of rotation, and forces up to M / L with M the pure moment at the largest rotation.
+
+    Args:
+        hinge: whose box.
+        max_angle: in place of the hinge's own [rad].
+        max_force: in place of M / L [N].
+    """
     angle = hinge.max_angle if max_angle is None else max_angle
-    if not 0 < angle < np.pi / 2:
-        raise FlexureError(f"max_angle = {angle:g} rad is outside (0, pi/2)")
+    check_max_angle(angle)
     return Box(angle, moment_at(hinge, angle) / hinge.length if max_force is None else max_force)
 
 
-def fit_states(hinge: Hinge, box: Box, count: int = 600, seed: int = 0, elements: int = fem.ELEMENTS) -> States:
-    """States for a fit: a scrambled Sobol sequence over the box, denser at its faces, where polynomials err most."""
+def fit_states(hinge: Hinge, box: Box, count: int = 600, seed: int = 0, elements: int = ELEMENTS) -> States:
+    """States for a fit: a scrambled Sobol sequence over the box, denser at its faces, where polynomials err most.
+
+    Args:
+        hinge, box: what, and where.
+        count: of states, 8 or more.
+        seed: of the scrambling.
+        elements: of a leaf as long as the hinge.
+
+    Raises:
+        FlexureError: for too few states, and as ``states_at``.
+    """
+    from scipy.stats import qmc  # late: scipy.stats doubles the time of the import for all who only solve
+
     if count < 8:
         raise FlexureError(f"count = {count}; a fit needs 8 states or more")
     draws = qmc.Sobol(3, seed=seed).random_base2(int(np.ceil(np.log2(count))))[:count]
@@ -54,20 +58,26 @@ def fit_states(hinge: Hinge, box: Box, count: int = 600, seed: int = 0, elements
 
 
 def held_out_states(
-    hinge: Hinge, box: Box, count: int = 300, seed: int = 12345, elements: int = fem.ELEMENTS
+    hinge: Hinge, box: Box, count: int = 300, seed: int = HELD_OUT_SEED, elements: int = ELEMENTS
 ) -> States:
-    """Uniformly random wrenches of the box; keep the seed out of any fit."""
+    """Uniformly random wrenches of the box, as ``fit_states`` counts them; keep the seed out of any fit."""
     return states_at(hinge, box, np.random.default_rng([seed, 1]).uniform(-1, 1, (count, 3)), elements)
 
 
-def states_at(hinge: Hinge, box: Box, unit: FloatArray, elements: int = fem.ELEMENTS) -> States:
-    """States at ``unit`` (n, 3) in [-1, 1]: theta, force x, force y in units of the box, each by its path from rest.
+def states_at(hinge: Hinge, box: Box, unit: FloatArray, elements: int = ELEMENTS) -> States:
+    """States at given places of the box, each by its path from rest.
 
-    Raises FlexureError when one cannot be reached or is unstable under its dead load: the box goes past buckling.
+    Args:
+        hinge, box: what, and where.
+        unit: (n, 3) in [-1, 1]: theta, force x, force y in units of the box.
+        elements: of a leaf as long as the hinge.
+
+    Raises:
+        FlexureError: when one cannot be reached or is unstable under its dead load: the box goes past buckling.
     """
     force = box.max_force * unit[:, 1:]
-    solution = fem.rotate(hinge, box.max_angle * unit[:, 0], force=force, elements=elements, from_rest=True)
-    bad = np.flatnonzero((solution.status != fem.CONVERGED) | ~solution.stable)
+    solution = rotate(hinge, box.max_angle * unit[:, 0], force=force, elements=elements, from_rest=True)
+    bad = np.flatnonzero((solution.status != CONVERGED) | ~solution.stable)
     if len(bad):
         i = int(bad[0])
         why = solution.reason(i) or "is unstable under that dead load: past buckling"

@@ -7,14 +7,10 @@ from dataclasses import dataclass, field, replace
 
 from tensegym.errors import FlexureError
 
+from .ranges import check_max_angle, check_not_negative, check_positive, is_number, shown
+
 GROUND, TIP = "ground", "tip"
 Point = tuple[float, float]
-
-
-def positive(what: str, value: float, unit: str) -> None:
-    """Refuse a value that is no finite positive number."""
-    if not (math.isfinite(value) and value > 0):
-        raise FlexureError(f"{what} = {value:g} {unit}; give a finite value above 0")
 
 
 @dataclass(frozen=True)
@@ -31,12 +27,12 @@ class Material:
     """The user's factor on E, in (0, inf); used with modulus = factor only."""
 
     def __post_init__(self) -> None:
-        positive("youngs_modulus", self.youngs_modulus, "Pa")
-        if not -1 < self.poisson_ratio < 0.5:
-            raise FlexureError(f"poisson_ratio = {self.poisson_ratio:g} is outside (-1, 0.5); PETG has 0.38")
+        check_positive("youngs_modulus", self.youngs_modulus, "Pa")
+        if not (is_number(self.poisson_ratio) and -1 < self.poisson_ratio < 0.5):
+            raise FlexureError(f"poisson_ratio = {shown(self.poisson_ratio)} is outside (-1, 0.5); PETG has 0.38")
         if self.modulus not in ("beam", "plate", "factor"):
             raise FlexureError(f"modulus = {self.modulus!r}; one of beam, plate, factor")
-        positive("factor", self.factor, "")
+        check_positive("factor", self.factor)
         if self.modulus != "factor" and self.factor != 1.0:
             raise FlexureError(
                 f"factor = {self.factor:g} has no effect with modulus = {self.modulus}; use modulus = factor"
@@ -70,12 +66,12 @@ class Leaf:
 
     def __post_init__(self) -> None:
         for what, point in (("start", self.start), ("end", self.end)):
-            if len(point) != 2 or not all(map(math.isfinite, point)):
+            if len(point) != 2 or not all(map(is_number, point)):
                 raise FlexureError(f"leaf {self.start_body}-{self.end_body}: {what} = {point} is no point (x, y)")
         if self.start_body == self.end_body:
             raise FlexureError(f"a leaf joins {self.start_body!r} to itself; its ends need two bodies")
-        positive(f"leaf {self.start_body}-{self.end_body}: width", self.width, "m")
-        positive(f"leaf {self.start_body}-{self.end_body}: thickness", self.thickness, "m")
+        check_positive(f"leaf {self.start_body}-{self.end_body}: width", self.width, "m")
+        check_positive(f"leaf {self.start_body}-{self.end_body}: thickness", self.thickness, "m")
         if not self.thickness < self.length / 4:
             raise FlexureError(
                 f"leaf {self.start_body}-{self.end_body}: thickness = {self.thickness:g} m at a length of "
@@ -106,11 +102,9 @@ class Hinge:
     """Largest rotation the hinge is meant for [rad], in (0, pi/2): the range of fits and tables."""
 
     def __post_init__(self) -> None:
-        positive("length", self.length, "m")
-        if not (math.isfinite(self.arm) and self.arm >= 0):
-            raise FlexureError(f"arm = {self.arm:g} m; give 0 or more")
-        if not 0 < self.max_angle < math.pi / 2:
-            raise FlexureError(f"max_angle = {self.max_angle:g} rad is outside (0, pi/2)")
+        check_positive("length", self.length, "m")
+        check_not_negative("arm", self.arm, "m")
+        check_max_angle(self.max_angle)
         if len(set(self.bodies)) != len(self.bodies) or not {GROUND, TIP} <= set(self.bodies):
             raise FlexureError(f"bodies = {list(self.bodies)}; give each once, with {GROUND!r} and {TIP!r} among them")
         for leaf in self.leaves:

@@ -13,7 +13,8 @@ from collections.abc import Callable
 
 from tensegym.errors import FlexureError
 
-from .hinge import GROUND, TIP, Hinge, Leaf, Material, positive
+from .hinge import GROUND, TIP, Hinge, Leaf, Material
+from .ranges import check_positive, is_number, shown
 
 MM = 1e-3
 
@@ -37,7 +38,7 @@ def leaf_spring(*, length: float = 40 * MM, width: float = 40 * MM, thickness: f
 def trls2(*, length: float = 40 * MM, width: float = 40 * MM, thickness: float = 0.8 * MM, rib: float = 0.8 * MM,
           material: Material | None = None, arm: float = 120 * MM) -> Hinge:  # fmt: skip
     """TRLS(2x): a leaf with two rigid transverse ribs at L/3 and 2L/3 (assumed), ``rib`` long. Lengths [m]."""
-    positive("rib", rib, "m")
+    check_positive("rib", rib, "m")
     if not rib < length / 3:
         raise FlexureError(f"rib = {rib:g} m is outside (0, length / 3) at length = {length:g} m")
     stops = [
@@ -69,8 +70,8 @@ def cross_spring(*, length: float = 40 * MM, height: float = 40 * MM, width: flo
 
     ``height`` is that of each leaf: they run from (0, -+crossing height) to (L, +-(1 - crossing) height). Lengths [m].
     """
-    if not 0 <= crossing <= 1:
-        raise FlexureError(f"crossing = {crossing:g} is outside [0, 1]; 0.5 is the symmetric pivot")
+    if not (is_number(crossing) and 0 <= crossing <= 1):
+        raise FlexureError(f"crossing = {shown(crossing)} is outside [0, 1]; 0.5 is the symmetric pivot")
     leaves = [Leaf(GROUND, (0.0, -s * crossing * height), TIP, (length, s * (1 - crossing) * height), width / 2,
                    thickness) for s in (-1, 1)]  # fmt: skip
     return Hinge("cross-spring", tuple(leaves), length, material=material or Material(), arm=arm)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
 
-FloatArray = NDArray[np.float64]
 _SHAPES = {"theta": (), "tip": (2,), "force": (2,), "moment": ()}
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tensegym.flexure.hinge.states import FloatArray
+from tensegym.arrays import FloatArray
 
 NARROWED = 0.5
 """A coefficient is identified when the data leave less than this share of its expected size open."""

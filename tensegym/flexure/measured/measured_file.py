@@ -22,8 +22,9 @@ from pathlib import Path
 
 import numpy as np
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import InputError
-from tensegym.flexure.hinge.states import FloatArray, States
+from tensegym.flexure.hinge import States
 
 PAPER_LENGTH, ARM_LENGTH = 0.04, 0.12
 """The paper's hinges from base to tip, and its arm beyond the tip [m]"""

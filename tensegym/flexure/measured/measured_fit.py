@@ -8,14 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.states import FloatArray, States
+from tensegym.flexure.hinge import States
 from tensegym.flexure.models.certificate import certify
-from tensegym.flexure.models.errors_table import model_errors
 from tensegym.flexure.models.joint import Joint
+from tensegym.flexure.models.model_error import model_errors
 from tensegym.flexure.models.planar_spring import PlanarSpring, fit_planar
 from tensegym.flexure.models.potential import Potential
-from tensegym.flexure.models.potential_fit import mask_of
+from tensegym.flexure.models.potential_terms import mask_of
 from tensegym.flexure.models.torsion_spring import TorsionSpring, fit_torsion
 
 from .coefficient import Coefficient, judge

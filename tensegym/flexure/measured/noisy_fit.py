@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.fem.sampling import Box
-from tensegym.flexure.hinge.states import FloatArray, States
+from tensegym.flexure.hinge import Box, States
 from tensegym.flexure.models.potential import Potential
-from tensegym.flexure.models.potential_fit import mask_of
 from tensegym.flexure.models.potential_kernel import NAMES, SK, G
 from tensegym.flexure.models.potential_residual import Data, powers, predict, scaled
+from tensegym.flexure.models.potential_terms import mask_of
 
 from .coefficient import Coefficient, judge
 from .noisy_prior import Prior, noisy_start

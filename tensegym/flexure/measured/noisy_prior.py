@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.states import FloatArray
 from tensegym.flexure.models.potential_kernel import RHO, SA, SB, SIGMA, SK, SU, G, H
 from tensegym.flexure.models.potential_residual import Data, powers
 

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.polynomial import polynomial as poly
 from scipy.special import comb
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.states import FloatArray
 
 from .potential import Potential
 from .potential_kernel import SA, SB, SK, SU, G

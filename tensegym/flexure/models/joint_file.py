@@ -11,12 +11,11 @@ import numpy as np
 
 from tensegym.errors import FlexureError
 from tensegym.files import replace_file
-from tensegym.flexure.fem.sampling import Box
-from tensegym.flexure.hinge.hinge_file import hinge_from_dict, hinge_to_dict
+from tensegym.flexure.hinge import Box, hinge_from_dict, hinge_to_dict
 
 from .certificate import certify
-from .errors_table import ModelError
 from .joint import Joint, Model
+from .model_error import ModelError
 from .planar_spring import PlanarSpring
 from .potential import Potential
 from .potential_kernel import NAMES

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.fem import solve as fem
-from tensegym.flexure.fem.sampling import Box
-from tensegym.flexure.hinge.hinge import Hinge
-from tensegym.flexure.hinge.states import FloatArray
+from tensegym.flexure import fem
+from tensegym.flexure.hinge import Box, Hinge
 
 from .joint import Model
 

@@ -11,11 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from tensegym.errors import FlexureError
-from tensegym.flexure.fem.sampling import held_out_states
-from tensegym.flexure.hinge.hinge import Hinge, positive
+from tensegym.flexure.fem.arm_sweep import arm_sweep
+from tensegym.flexure.fem.sampling import HELD_OUT_SEED, held_out_states
+from tensegym.flexure.hinge import Hinge
+from tensegym.flexure.hinge.ranges import check_positive
 
-from .errors_table import tip_errors
-from .joint import HELD_OUT_SEED, Joint, arm_sweep, fit_joint
+from .joint import Joint
+from .joint_fit import fit_joint
+from .model_error import tip_errors
 from .pseudo_rigid import Placement, planar_placement
 
 ORDER = ("torsion", "planar", "potential")
@@ -40,7 +43,7 @@ def choose_model(hinge: Hinge, accepted: float, *, loads: str = "arm", joint: Jo
     loads: "arm" judges on the paper's sweep (a force across the arm, one load path); "box" also on random loads of the
     joint's box. Raises FlexureError for an accepted error that is not positive.
     """
-    positive("accepted", accepted, "m")
+    check_positive("accepted", accepted, "m")
     if loads not in ("arm", "box"):
         raise FlexureError(f"loads = {loads!r}; arm or box")
     joint = joint or fit_joint(hinge, held_out=0)

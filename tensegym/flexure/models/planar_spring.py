@@ -17,8 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.states import FloatArray, States
+from tensegym.flexure.hinge import States
+from tensegym.flexure.hinge.ranges import check_positive
 
 from .potential_fit import MOMENT_UNIT, TIP_UNIT
 
@@ -75,9 +77,8 @@ class PlanarSpring:
     """[N m/rad]."""
 
     def __post_init__(self) -> None:
-        for name in ("kx", "ky", "kz"):
-            if not (np.isfinite(getattr(self, name)) and getattr(self, name) > 0):
-                raise FlexureError(f"{name} = {getattr(self, name):g}; give a finite stiffness above 0")
+        for name, unit in (("kx", "N/m"), ("ky", "N/m"), ("kz", "N m/rad")):
+            check_positive(name, getattr(self, name), unit)
 
     @property
     def a(self) -> float:

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.fem.sampling import Box
-from tensegym.flexure.hinge.states import FloatArray, States
+from tensegym.flexure.hinge import Box, States
+from tensegym.flexure.hinge.ranges import check_positive
 
 from . import potential_kernel as kernel
 
@@ -39,18 +40,11 @@ class Potential:
         if rows.ndim != 2 or rows.shape[0] != len(kernel.NAMES) or not np.isfinite(rows).all():
             raise FlexureError(f"coefficients have shape {rows.shape}; give 8 finite rows: {', '.join(kernel.NAMES)}")
         for name in ("length", "moment_scale", "angle_scale"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value > 0):
-                raise FlexureError(f"{name} = {value:g}; give a finite value above 0")
+            check_positive(name, getattr(self, name))
         if rows[kernel.RHO, 0] != 0 or rows[kernel.SIGMA, 0] != 0:
             raise FlexureError("rho and sigma must have no constant term: the joint rests at (L, 0)")
         object.__setattr__(self, "coefficients", rows)
         object.__setattr__(self, "scales", np.array([self.length, self.moment_scale, self.angle_scale]))
-
-    @property
-    def coefficient_count(self) -> int:
-        """Coefficients that are not zero."""
-        return int(np.count_nonzero(self.coefficients))
 
     def wrench(self, x: float, y: float, theta: float) -> tuple[float, float, float]:
         """Force x, y [N] in base axes and moment about the tip [N m] that hold the tip at (x, y) [m], theta [rad].

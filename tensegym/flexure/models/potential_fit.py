@@ -9,25 +9,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.fem.sampling import Box
-from tensegym.flexure.hinge.states import FloatArray, States
+from tensegym.flexure.hinge import Box, States
 
 from .potential import Potential
-from .potential_kernel import NAMES, RHO, SA, SB, SIGMA, SK, SU, G, H
+from .potential_kernel import NAMES, SA, SK, SU, G
 from .potential_residual import Data, powers, predict, scaled
+from .potential_start import linear_start
+from .potential_terms import mask_of
 
-# powers of u of every row; a hinge symmetric about its axis and end to end needs the even ones only
-EVEN = {SU: (0, 2, 4), SK: (0, 2, 4), SA: (0, 2), SB: (0, 2, 4), RHO: (2, 4, 6), SIGMA: (), H: (), G: (0, 2, 4)}
-# symmetric about its axis only: theta and e_y change sign together
-MIRROR = EVEN | {SIGMA: (1, 3, 5), H: (1, 3)}
-# no symmetry
-FREE = {SU: tuple(range(5)), SK: tuple(range(5)), SA: tuple(range(3)), SB: tuple(range(5)), RHO: tuple(range(1, 7)),
-        SIGMA: tuple(range(1, 6)), H: tuple(range(4)), G: tuple(range(5))}  # fmt: skip
-SYMMETRIES = {"both": EVEN, "axis": MIRROR, "none": FREE}
-DEGREE = 6
 # A tip error of 1e-3 L costs as much as 1e-2 of the moment scale: 40 um beside 1 % at L = 40 mm, the ratio of the
 # accuracies asked of the fit (5 um, 0.05 %) and of a stand (0.05 mm, 0.5 %).
 TIP_UNIT, MOMENT_UNIT = 1e-3, 8e-3
@@ -50,24 +44,22 @@ class Fit:
     """States fitted."""
 
 
-def mask_of(symmetry: str) -> np.ndarray:
-    """(8, DEGREE + 1) which coefficients are fitted. Raises FlexureError."""
-    if symmetry not in SYMMETRIES:
-        raise FlexureError(f"symmetry = {symmetry!r}; one of {', '.join(SYMMETRIES)}")
-    mask = np.zeros((len(NAMES), DEGREE + 1), dtype=bool)
-    for row, exponents in SYMMETRIES[symmetry].items():
-        mask[row, list(exponents)] = True
-    return mask
+def fit_potential(
+    states: States, length: float, *, box: Box | None = None, symmetry: str = "both",
+    start: FloatArray | None = None, start_noise: float = 0.0, seed: int = 0,
+) -> Fit:  # fmt: skip
+    """Fit a potential to states of a hinge.
 
+    Args:
+        states: those that are not whole are passed over.
+        length: rest length L [m].
+        box: where it is to be valid; default: the states' own.
+        symmetry: both (about the axis and end to end), axis, none; see ``symmetry_of``.
+        start: (8, DEGREE + 1) coefficients to start from besides the linear start; the better end counts.
+        start_noise: relative noise drawn on the start with ``seed``, to show that the end does not hang on it.
 
-def fit_potential(states: States, length: float, *, box: Box | None = None, symmetry: str = "both",
-                  start: FloatArray | None = None, start_noise: float = 0.0, seed: int = 0) -> Fit:  # fmt: skip
-    """Fit a potential to ``states`` of a hinge of rest length L [m].
-
-    box: where it is to be valid; default: the states' own. symmetry: both (about the axis and end to end), axis, none.
-    start: coefficients to start from besides the linear start, the better end counts; start_noise: relative noise
-    drawn on the start with ``seed``, to show that the end does not hang on it. Raises FlexureError on too few states or
-    a box of no extent.
+    Raises:
+        FlexureError: on too few states, a box of no extent, or states past buckling.
     """
     states = states.whole()
     mask = mask_of(symmetry)
@@ -98,7 +90,7 @@ def fit_potential(states: States, length: float, *, box: Box | None = None, symm
     return Fit(potential, tip_rms, moment_rms, _unidentified(slopes, mask), symmetry, len(states))
 
 
-def _descend(first: FloatArray, mask: np.ndarray, data: Data) -> tuple[float, FloatArray, FloatArray]:
+def _descend(first: FloatArray, mask: NDArray[np.bool_], data: Data) -> tuple[float, FloatArray, FloatArray]:
     """Levenberg and Marquardt from ``first``: cost, coefficients (8, degree + 1), Jacobian (3n, fitted)."""
 
     def unpack(vector: FloatArray) -> FloatArray:
@@ -128,71 +120,7 @@ def _descend(first: FloatArray, mask: np.ndarray, data: Data) -> tuple[float, Fl
     return float(result.cost), coefficients, jacobian(coefficients[mask])
 
 
-def linear_start(data: Data, mask: np.ndarray) -> FloatArray:
-    """Coefficients (8, DEGREE + 1) from linear least squares alone."""
-    f, f1 = powers(data.u, mask.shape[1] - 1)
-    # transverse: (Y - sigma)(K - 2 g n) = q + n h is linear in K, K sigma, g and h - 2 g sigma
-    squared = _doubled(mask[SK])
-    tau = mask[SIGMA]
-    crossed = mask[H] | (mask[SIGMA] & mask[H].any())
-    n_, ey_ = data.n[:, None], data.ey[:, None]
-    blocks = [ey_ * f[:, squared], -f[:, tau], -2 * n_ * ey_ * f[:, mask[G]], -n_ * f[:, crossed]]
-    k, t, g, hh = _linear(data.q, blocks)
-    k_u, g_u = np.maximum(f[:, squared] @ k, 1e-9), f[:, mask[G]] @ g
-    sigma_u = f[:, tau] @ t / k_u
-    h_u = f[:, crossed] @ hh + 2 * g_u * sigma_u
-    out = np.zeros(mask.shape)
-    out[G, mask[G]] = g
-    for row, values in ((SK, np.sqrt(k_u)), (SIGMA, sigma_u), (H, h_u)):
-        if mask[row].any():
-            (out[row, mask[row]],) = _linear(values, [f[:, mask[row]]])
-    for _ in range(60):  # data that bend the wrong way near buckling: start from a joint that is stable on them
-        h_u, g_u = f @ out[H], f @ out[G]
-        if (np.square(f @ out[SK]) > 2.2 * g_u * data.n).all():
-            break
-        out[G] *= 0.7
-    # axial: e_x - 1 - h Y - g Y^2 = rho + C n
-    y = (data.q + data.n * h_u) / (np.square(f @ out[SK]) - 2 * g_u * data.n)
-    squared = _doubled(mask[SA]) | _doubled(mask[SB], 2)
-    rho, soft = _linear(data.ex - 1 - (h_u + g_u * y) * y, [f[:, mask[RHO]], data.n[:, None] * f[:, squared]])
-    out[RHO, mask[RHO]] = rho
-    soft_u = f[:, squared] @ soft
-    at_rest = max(float(soft[0]), 1e-3 * float(np.abs(soft_u).max()), 1e-12)
-    out[SA, 0] = np.sqrt(at_rest)
-    away = np.abs(data.u) > 0.05
-    rise = np.sqrt(np.maximum(soft_u[away] - at_rest, 0.0) / data.u[away] ** 2)
-    (out[SB, mask[SB]],) = _linear(rise, [f[away][:, mask[SB]]])
-    # rotational: what is left of the moment is U' / theta0, linear in the coefficients of U = u^2 P(u) / 2
-    out[SU] = 0.0
-    _, _, m, _ = predict(out, data)
-    squared = _doubled(mask[SU])
-    lever = data.u[:, None] * f[:, squared] + 0.5 * data.u[:, None] ** 2 * f1[:, squared]
-    (p,) = _linear((data.m - m) * data.theta0, [lever])
-    (out[SU, mask[SU]],) = _linear(np.sqrt(np.maximum(f[:, squared] @ p, 1e-9)), [f[:, mask[SU]]])
-    return out
-
-
-def _doubled(row: np.ndarray, extra: int = 0) -> np.ndarray:
-    """Exponents of the square of a polynomial with these exponents, times u^extra, cut to the degree at hand."""
-    out = np.zeros_like(row)
-    exponents = np.flatnonzero(row)
-    for a in exponents:
-        for b in exponents:
-            if a + b + extra < len(row):
-                out[a + b + extra] = True
-    return out
-
-
-def _linear(target: FloatArray, blocks: list[FloatArray]) -> list[FloatArray]:
-    """Least squares over column blocks; coefficients block by block. Columns are scaled, blind directions stay 0."""
-    matrix = np.concatenate(blocks, axis=1)
-    size = np.linalg.norm(matrix, axis=0)
-    size[size == 0] = 1.0
-    solution = np.linalg.lstsq(matrix / size, target, rcond=1e-9)[0] / size
-    return np.split(solution, np.cumsum([b.shape[1] for b in blocks])[:-1])
-
-
-def _unidentified(jacobian: FloatArray, mask: np.ndarray) -> tuple[str, ...]:
+def _unidentified(jacobian: FloatArray, mask: NDArray[np.bool_]) -> tuple[str, ...]:
     """Coefficients that stand out in directions of coefficient space the data do not see."""
     size = np.linalg.norm(jacobian, axis=0)
     dead = size < 1e-9 * size.max()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tensegym.flexure.hinge.states import FloatArray
+from tensegym.arrays import FloatArray
 
 from .potential_kernel import NAMES, RHO, SA, SB, SIGMA, SK, SU, G, H
 

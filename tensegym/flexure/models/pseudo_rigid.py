@@ -16,8 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize, minimize_scalar
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.states import FloatArray, States
+from tensegym.flexure.hinge import States
 
 READINGS = ("dx", "F2")
 

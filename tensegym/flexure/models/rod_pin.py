@@ -11,11 +11,12 @@ from functools import lru_cache
 
 import numpy as np
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.fem import solve as fem
+from tensegym.flexure import fem
 from tensegym.flexure.fem.buckling import buckling_load, check_parts
-from tensegym.flexure.hinge.hinge import Hinge
-from tensegym.flexure.hinge.states import FloatArray, States, join
+from tensegym.flexure.hinge import Hinge, States, join
+from tensegym.flexure.hinge.ranges import check_max_angle
 
 from .torsion_spring import TorsionSpring, stiffness_about
 
@@ -50,8 +51,7 @@ def rod_pin(hinge: Hinge, before: float, after: float, max_angle: float, compres
     Raises FlexureError as ``buckling_load``, and for an angle or a compression out of range.
     """
     check_parts(before, after)
-    if not 0 < max_angle < np.pi / 2:
-        raise FlexureError(f"max_angle = {max_angle:g} rad is outside (0, pi/2)")
+    check_max_angle(max_angle)
     limit = buckling_load(hinge, before, after, elements)
     if not 0 <= compression < limit:
         raise FlexureError(f"compression = {compression:g} N is outside [0, {limit:.4g}) N, the rod's buckling load; "

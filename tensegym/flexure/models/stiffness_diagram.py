@@ -14,8 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.states import FloatArray, States
+from tensegym.flexure.hinge import States
 
 from .planar_spring import spring_poses, spring_wrench
 from .pseudo_rigid import Placement, planar_placement, spring_track

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.states import FloatArray, States
+from tensegym.flexure.hinge import States
+from tensegym.flexure.hinge.ranges import check_positive
 
 from .pseudo_rigid import torsion_lambda
 
@@ -24,8 +26,7 @@ class TorsionSpring:
     """[N m/rad]."""
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.stiffness) and self.stiffness > 0):
-            raise FlexureError(f"stiffness = {self.stiffness:g} N m/rad; give a finite value above 0")
+        check_positive("stiffness", self.stiffness, "N m/rad")
 
     def poses(self, theta: FloatArray, force: FloatArray) -> States:
         """States at theta (n,) [rad] under the dead force (n, 2) [N] at the tip; the pin does not give."""

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tensegym.flexure import fem
 from tensegym.flexure.fem import newton
-from tensegym.flexure.fem import solve as fem
+from tensegym.flexure.fem.path import sweep
 
 from . import potential_kernel as kernel
 from .joint import Joint
@@ -49,11 +50,11 @@ def sweep_times(joint: Joint, runs: int = 20, elements: int = fem.ELEMENTS) -> S
     assert isinstance(potential, Potential)
     theta = joint.box.max_angle * np.arange(1, POINTS + 1) / POINTS
     direction = fem.arm_direction(theta, joint.hinge.arm) if joint.hinge.arm else np.tile([0.0, 0.0, 1.0], (POINTS, 1))
-    asks = np.zeros((POINTS, 8))
-    asks[:, newton.THETA] = theta
-    asks[:, newton.WX : newton.WM + 1] = direction
+    cases = np.zeros((POINTS, 8))
+    cases[:, newton.THETA] = theta
+    cases[:, newton.WX : newton.WM + 1] = direction
     mesh = fem.mesh_of(joint.hinge, elements)
-    force = np.ascontiguousarray(newton.sweep(mesh, newton.ROTATION, asks, False, False)[0][:, 3:5])
-    slow = best_of(lambda: newton.sweep(mesh, newton.ROTATION, asks, False, False), runs)
+    force = np.ascontiguousarray(sweep(mesh, newton.ROTATION, cases, False, False)[0][:, 3:5])
+    slow = best_of(lambda: sweep(mesh, newton.ROTATION, cases, False, False), runs)
     fast = best_of(lambda: kernel.pose_batch(potential.coefficients, potential.scales, theta, force), 50 * runs)
     return SweepTimes(slow, fast)

@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 
 from tensegym.cli.flexure.table import PAPER_TABLE_1
 from tensegym.errors import FlexureError
-from tensegym.flexure.fem import solve as fem
+from tensegym.flexure import fem
+from tensegym.flexure.fem.arm_sweep import arm_sweep
 from tensegym.flexure.fem.centre_shift import crossing_shift, least_shift_crossing
-from tensegym.flexure.hinge.presets import PAPER_HINGES, preset
-from tensegym.flexure.hinge.states import States
-from tensegym.flexure.models.joint import arm_sweep, fit_joint
+from tensegym.flexure.hinge import PAPER_HINGES, States, preset
+from tensegym.flexure.models.joint_fit import fit_joint
 from tensegym.flexure.models.model_choice import choose_model
 from tensegym.flexure.models.planar_spring import PlanarSpring, fit_planar, spring_energy, spring_poses, spring_wrench
 from tensegym.flexure.models.pseudo_rigid import planar_placement, torsion_lambda

@@ -7,7 +7,8 @@ from typing import Protocol
 
 import numpy as np
 
-from tensegym.flexure.hinge.states import FloatArray, States
+from tensegym.arrays import FloatArray
+from tensegym.flexure.hinge import States
 
 
 class JointModel(Protocol):

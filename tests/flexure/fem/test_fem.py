@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from tensegym.errors import FlexureError
-from tensegym.flexure.fem import solve as fem
-from tensegym.flexure.hinge.hinge import GROUND, TIP, Hinge, Leaf, Material
-from tensegym.flexure.hinge.presets import PAPER_HINGES, PRESETS, preset
+from tensegym.flexure import fem
+from tensegym.flexure.hinge import GROUND, PAPER_HINGES, PRESETS, TIP, Hinge, Leaf, Material, preset
 
 ASYMMETRIC = Hinge("asymmetric", (Leaf(GROUND, (0, -0.01), TIP, (0.04, 0.012), 0.02, 0.0008),
                                   Leaf(TIP, (0.04, -0.005), GROUND, (0, 0.02), 0.02, 0.0006)), 0.04)  # fmt: skip

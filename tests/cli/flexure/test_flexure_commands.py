@@ -8,9 +8,9 @@ import pytest
 
 from tensegym.cli.flexure.table import PAPER_TABLE_1
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.presets import PAPER_HINGES, preset
-from tensegym.flexure.models.joint import fit_joint
+from tensegym.flexure.hinge import PAPER_HINGES, preset
 from tensegym.flexure.models.joint_file import joint_to_dict, load_joint, save_joint
+from tensegym.flexure.models.joint_fit import fit_joint
 from tests.conftest import assert_refused
 
 LOADS = "Fx_N,Fy_N,Mz_Nmm\n0,0.5,10\n-0.5,0.2,-20\n0,0,0\n"

@@ -1,30 +1,22 @@
-"""The paper's Fig. 5 from the stand in PyBullet, and the arm's free vibration. matplotlib is imported late."""
+"""The paper's Fig. 5 from the stand in PyBullet, and the arm's free vibration."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from tensegym.flexure.figures import _pyplot
-from tensegym.flexure.hinge.states import States
+from tensegym.flexible.stand import ARM, Pull, Vibration
+from tensegym.flexure.hinge import States
 from tensegym.flexure.models.joint import Joint
-
-from .stand import ARM, Pull, Vibration
-
-
-def save_picture(picture: NDArray[np.uint8], path: Path) -> None:
-    """Write (h, w, 3) as it is."""
-    _pyplot().imsave(path, picture)
+from tensegym.plotting import new_figure, save
 
 
-def figure_5(name: str, fem: States, stand: Pull, measured: States, fitted: Joint | None, path: Path) -> None:
+def draw_figure_5(name: str, fem: States, stand: Pull, measured: States, fitted: Joint | None, path: Path) -> None:
     """Torque against angle by FEM, the joint in PyBullet and the virtual measurement, with what each misses of the FEM,
     and the tip's path."""
-    plt = _pyplot()
-    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(14, 4.2), layout="constrained")
+    figure, (left, middle, right) = new_figure(1, 3, size=(14, 4.2))
     theta = stand.poses[:, 2]
     pale = {"color": "black", "lw": 2.5, "alpha": 0.35, "label": "FEM"}
     left.plot(np.degrees(fem.theta), 1e3 * fem.moment, **pale)
@@ -47,19 +39,16 @@ def figure_5(name: str, fem: States, stand: Pull, measured: States, fitted: Join
     for axis in (left, middle, right):
         axis.grid(alpha=0.3)
         axis.legend(fontsize=7)
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
+    save(figure, path)
 
 
-def vibration_picture(name: str, run: Vibration, path: Path) -> None:
+def draw_vibration(name: str, run: Vibration, path: Path) -> None:
     """Angle and energy after the arm is let go."""
-    plt = _pyplot()
-    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.6), layout="constrained")
+    figure, (left, right) = new_figure(1, 2, size=(10, 3.6))
     left.plot(run.time, np.degrees(run.theta), lw=1)
     left.set(title=f"{name}: {run.frequency:.4g} Hz", xlabel="t [s]", ylabel=r"$\theta$ [deg]")
     right.plot(run.time, 1e3 * run.energy, lw=1)
     right.set(title="kinetic and elastic energy", xlabel="t [s]", ylabel="[mJ]", ylim=(0, 1.2e3 * run.energy.max()))
     for axis in (left, right):
         axis.grid(alpha=0.3)
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
+    save(figure, path)

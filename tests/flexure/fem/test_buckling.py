@@ -8,8 +8,8 @@ from scipy.optimize import brentq
 
 from tensegym.errors import FlexureError
 from tensegym.flexure.fem.buckling import buckling_load
-from tensegym.flexure.hinge.hinge import Hinge, Leaf, Material
-from tensegym.flexure.hinge.presets import PRESETS, leaf_spring, parallel_guide, preset
+from tensegym.flexure.hinge import PRESETS, Hinge, Leaf, Material, preset
+from tensegym.flexure.hinge.presets import leaf_spring, parallel_guide
 from tensegym.flexure.models.rod_pin import rod_pin
 
 STEEL = Material(210e9, 0.3)

@@ -6,14 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tensegym.flexure.fem import solve as fem
-from tensegym.flexure.hinge.presets import preset
+from tensegym.flexure import fem
+from tensegym.flexure.hinge import preset
 
 pytest.importorskip("exudyn")
 
 
 def benchmark():
-    path = Path(__file__).parents[2] / "benchmarks" / "flexure.py"
+    path = Path(__file__).parents[3] / "benchmarks" / "flexure.py"
     spec = importlib.util.spec_from_file_location("benchmarks_flexure", path)
     module = importlib.util.module_from_spec(spec)
     import sys

@@ -8,13 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.presets import PAPER_HINGES, preset
+from tensegym.flexure.hinge import PAPER_HINGES, preset
 from tensegym.flexure.models.certificate import certify, lower_bound, rotation_stiffness
-from tensegym.flexure.models.joint import fit_joint
+from tensegym.flexure.models.joint_fit import fit_joint
 from tensegym.flexure.models.passivity import loop_work
 from tensegym.flexure.models.potential import Potential
-from tensegym.flexure.models.potential_fit import mask_of
 from tensegym.flexure.models.potential_kernel import SK, SU, G
+from tensegym.flexure.models.potential_terms import mask_of
 
 
 @pytest.fixture(scope="module")

@@ -7,10 +7,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.hinge import GROUND, TIP, Hinge, Leaf, Material
-from tensegym.flexure.hinge.hinge_file import as_hinge, hinge_from_dict, hinge_to_dict, hinge_to_toml
-from tensegym.flexure.hinge.presets import PRESETS, leaf_spring, preset, trls2
-from tensegym.flexure.models.joint import symmetry_of
+from tensegym.flexure.hinge import (
+    GROUND,
+    PRESETS,
+    TIP,
+    Hinge,
+    Leaf,
+    Material,
+    as_hinge,
+    hinge_from_dict,
+    hinge_to_dict,
+    hinge_to_toml,
+    preset,
+    symmetry_of,
+)
+from tensegym.flexure.hinge.presets import leaf_spring, trls2
 
 LOOSE = Leaf("a", (0, 0), "b", (0.01, 0), 0.01, 1e-4)
 PLAIN = Leaf(GROUND, (0, 0), TIP, (0.04, 0), 0.04, 0.0008)

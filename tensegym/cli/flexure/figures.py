@@ -1,4 +1,4 @@
-"""Pictures of hinges and of what the models say about them. matplotlib is imported only when one is drawn."""
+"""Figures of hinges and of what the models say about them."""
 
 from __future__ import annotations
 
@@ -8,48 +8,39 @@ from typing import Any
 
 import numpy as np
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
+from tensegym.flexure import fem
+from tensegym.flexure.fem.arm_sweep import arm_sweep
+from tensegym.flexure.fem.sampling import default_box
+from tensegym.flexure.hinge import GROUND, Hinge, States
+from tensegym.flexure.models.joint import MODELS, Joint
+from tensegym.flexure.models.model_error import tip_errors
+from tensegym.flexure.models.planar_spring import PlanarSpring
+from tensegym.flexure.models.pseudo_rigid import planar_placement, spring_track
+from tensegym.flexure.models.stiffness_diagram import StiffnessDiagram, invert
+from tensegym.plotting import new_figure, save
 
-from .fem import solve as fem
-from .fem.sampling import default_box
-from .hinge.hinge import GROUND, Hinge
-from .hinge.states import FloatArray, States
-from .models.errors_table import tip_errors
-from .models.joint import Joint, arm_sweep
-from .models.planar_spring import PlanarSpring
-from .models.pseudo_rigid import planar_placement, spring_track
-from .models.stiffness_diagram import StiffnessDiagram, invert
-
-LABELS = {"potential": "potential", "planar": "planar spring, constant k", "paper": "paper's stiffness diagrams",
-          "torsion": "torsion spring, 1-DoF"}  # fmt: skip
 COLOURS = {"potential": "tab:red", "planar": "tab:green", "paper": "tab:purple", "torsion": "tab:orange"}
 STYLES = {"potential": "--", "planar": "-.", "paper": ":", "torsion": (0, (5, 3))}
 
 
-def _pyplot() -> Any:
-    try:
-        import matplotlib
-    except ImportError as error:
-        raise FlexureError("pictures need matplotlib: pip install tensegym[train], or leave the picture out") from error
-    matplotlib.use("Agg", force=False)
-    import matplotlib.pyplot as plt
-
-    return plt
-
-
-def _panels(count: int, width: float = 5.0, height: float = 3.8) -> tuple[Any, Any, list[Any]]:
-    plt = _pyplot()
+def _panels(count: int, width: float = 5.0, height: float = 3.8) -> tuple[Any, list[Any]]:
+    """A figure and ``count`` axes in two columns."""
     columns = min(count, 2)
     rows = -(-count // columns)
-    figure, axes = plt.subplots(
-        rows, columns, figsize=(width * columns, height * rows), squeeze=False, layout="constrained"
-    )
+    figure, axes = new_figure(rows, columns, size=(width * columns, height * rows), squeeze=False)
     for spare in axes.flat[count:]:
         spare.axis("off")
-    return plt, figure, list(axes.flat[:count])
+    return figure, list(axes.flat[:count])
 
 
-def draw_hinge(axis: Any, hinge: Hinge, nodes: FloatArray, colour: str, alpha: float = 1.0) -> None:
+def _rows(count: int, height: float) -> tuple[Any, Any]:
+    """A figure and (count, 2) axes, a row a hinge."""
+    return new_figure(count, 2, size=(10, height * count), squeeze=False)
+
+
+def _draw_shape(axis: Any, hinge: Hinge, nodes: FloatArray, colour: str, alpha: float = 1.0) -> None:
     """One shape of the hinge from its nodes (k, 3), [mm] on the axes: leaves, bodies as the lines that join them."""
     first = 0
     points: dict[str, list[FloatArray]] = {body: [] for body in hinge.bodies}
@@ -66,12 +57,12 @@ def draw_hinge(axis: Any, hinge: Hinge, nodes: FloatArray, colour: str, alpha: f
         axis.plot(places[:, 0], places[:, 1], "s", ms=3.5, color=shade, alpha=alpha)
 
 
-def hinges_picture(hinges: Sequence[Hinge], path: Path, share: float = 0.8) -> None:
+def draw_hinges(hinges: Sequence[Hinge], path: Path, share: float = 0.8) -> None:
     """Every hinge at rest and at +-``share`` of its range: a force across its arm, or at the tip when it has no arm."""
-    plt, figure, axes = _panels(len(hinges))
+    figure, axes = _panels(len(hinges))
     for axis, hinge in zip(axes, hinges, strict=True):
         rest = fem.apply_wrench(hinge, np.zeros(3), keep_nodes=True)
-        draw_hinge(axis, hinge, rest.nodes[0], "0.35")
+        _draw_shape(axis, hinge, rest.nodes[0], "0.35")
         for sign, colour in ((1, "tab:blue"), (-1, "tab:red")):
             if hinge.arm:
                 steps = sign * share * hinge.max_angle * np.arange(1, 11) / 10
@@ -83,21 +74,19 @@ def hinges_picture(hinges: Sequence[Hinge], path: Path, share: float = 0.8) -> N
                 what = f"$\\pm${force:.3g} N along y"
             if solution.status[-1] != fem.CONVERGED:
                 raise FlexureError(f"{hinge.name}: {solution.reason(-1)}; lower max_angle")
-            draw_hinge(axis, hinge, solution.nodes[-1], colour)
+            _draw_shape(axis, hinge, solution.nodes[-1], colour)
             tip, turn = solution.tip[-1], solution.theta[-1]
             end = tip + min(hinge.arm, 0.5 * hinge.length) * np.array([np.cos(turn), np.sin(turn)])
             axis.plot(*(1e3 * np.array([tip, end])).T, color=colour, lw=3, alpha=0.3)
         axis.set(title=f"{hinge.name}: at rest and at {what}", xlabel="x [mm]", ylabel="y [mm]", aspect="equal")
     figure.suptitle("Black: ground; grey: at rest; pale bars: rigid bodies and the arm's beginning", fontsize=9)
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
+    save(figure, path)
 
 
-def torque_picture(joints: dict[str, Joint], path: Path, measured: dict[str, States] | None = None) -> None:
+def draw_torque(joints: dict[str, Joint], path: Path, measured: dict[str, States] | None = None) -> None:
     """Torque about the tip against angle under a force across the arm, every hinge (the paper's Fig. 5), and what each
     model misses of the FEM's."""
-    plt = _pyplot()
-    figure, axes = plt.subplots(len(joints), 2, figsize=(10, 3.3 * len(joints)), squeeze=False, layout="constrained")
+    figure, axes = _rows(len(joints), 3.3)
     for (left, right), (name, joint) in zip(axes, joints.items(), strict=True):
         assert joint.hinge is not None
         sweep = arm_sweep(joint.hinge, joint.box.max_angle)
@@ -106,7 +95,7 @@ def torque_picture(joints: dict[str, Joint], path: Path, measured: dict[str, Sta
         left.plot(angle, 1e3 * sweep.moment, color="black", lw=2.5, alpha=0.35, label="FEM")
         for key, model in joint.models.items():
             moment = model.poses(sweep.theta, sweep.force).moment
-            look = {"ls": STYLES[key], "color": COLOURS[key], "label": LABELS[key]}
+            look = {"ls": STYLES[key], "color": COLOURS[key], "label": MODELS[key]}
             left.plot(angle, 1e3 * moment, **look)
             right.plot(angle, 1e3 * (moment - sweep.moment), **look)
         if measured and name in measured:
@@ -119,13 +108,12 @@ def torque_picture(joints: dict[str, Joint], path: Path, measured: dict[str, Sta
         for axis in (left, right):
             axis.grid(alpha=0.3)
         left.legend(fontsize=7)
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
+    save(figure, path)
 
 
-def drift_picture(joints: dict[str, Joint], path: Path) -> None:
+def draw_drift(joints: dict[str, Joint], path: Path) -> None:
     """Drift of the axis: the planar spring's displacement on the arm's sweep, placed by either reading of F2."""
-    plt, figure, axes = _panels(len(joints))
+    figure, axes = _panels(len(joints))
     for axis, (name, joint) in zip(axes, joints.items(), strict=True):
         assert joint.hinge is not None
         sweep = arm_sweep(joint.hinge, joint.box.max_angle)
@@ -138,17 +126,15 @@ def drift_picture(joints: dict[str, Joint], path: Path) -> None:
         axis.set(title=name, xlabel=r"angle $\theta$ [deg]", ylabel="drift of the axis [mm]")
         axis.grid(alpha=0.3)
         axis.legend(fontsize=7)
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
+    save(figure, path)
 
 
-def stiffness_picture(joints: dict[str, Joint], path: Path) -> None:
+def draw_stiffness(joints: dict[str, Joint], path: Path) -> None:
     """The paper's stiffness diagrams on the arm's sweep, gaps where singular, beside the constant-k spring."""
     joints = {name: joint for name, joint in joints.items() if "paper" in joint.models}
     if not joints:
         raise FlexureError("no joint here has stiffness diagrams; the inversion is singular on their paths")
-    plt = _pyplot()
-    figure, axes = plt.subplots(len(joints), 2, figsize=(10, 3.1 * len(joints)), squeeze=False, layout="constrained")
+    figure, axes = _rows(len(joints), 3.1)
     for (left, right), (name, joint) in zip(axes, joints.items(), strict=True):
         diagram, planar = joint.models["paper"], joint.models.get("planar")
         assert isinstance(diagram, StiffnessDiagram) and joint.hinge is not None
@@ -168,22 +154,20 @@ def stiffness_picture(joints: dict[str, Joint], path: Path) -> None:
         for axis in (left, right):
             axis.grid(alpha=0.3)
             axis.legend(fontsize=8)
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
+    save(figure, path)
 
 
-def errors_picture(joints: dict[str, Joint], tests: dict[str, States], path: Path) -> None:
+def draw_errors(joints: dict[str, Joint], tests: dict[str, States], path: Path) -> None:
     """Histogram of the tip error of every model over states held out, on a logarithmic axis."""
-    plt, figure, axes = _panels(len(joints))
+    figure, axes = _panels(len(joints))
     for axis, (name, joint) in zip(axes, joints.items(), strict=True):
         for key, model in joint.models.items():
             error = 1e3 * tip_errors(model, tests[name])[0]
             error = error[np.isfinite(error) & (error > 0)]
             bins = np.logspace(-6, 2, 65)
-            axis.hist(error, bins=bins, color=COLOURS[key], alpha=0.5, label=LABELS[key])
+            axis.hist(error, bins=bins, color=COLOURS[key], alpha=0.5, label=MODELS[key])
         axis.set(title=f"{name}: {len(tests[name])} states held out", xlabel="tip error [mm]", ylabel="states")
         axis.set_xscale("log")
         axis.grid(alpha=0.3)
     axes[0].legend(fontsize=8)
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
+    save(figure, path)

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from tensegym.errors import FlexureError
-from tensegym.flexure.fem.sampling import Box, default_box, fit_states, held_out_states, moment_at
-from tensegym.flexure.hinge.hinge import GROUND, TIP, Hinge, Leaf
-from tensegym.flexure.hinge.presets import PAPER_HINGES, preset
+from tensegym.flexure.fem.sampling import default_box, fit_states, held_out_states, moment_at
+from tensegym.flexure.hinge import GROUND, PAPER_HINGES, TIP, Box, Hinge, Leaf, preset, symmetry_of
 from tensegym.flexure.models.certificate import certify
-from tensegym.flexure.models.errors_table import model_errors
-from tensegym.flexure.models.joint import fit_joint, symmetry_of
-from tensegym.flexure.models.potential_fit import fit_potential, mask_of
+from tensegym.flexure.models.joint_fit import fit_joint
+from tensegym.flexure.models.model_error import model_errors
+from tensegym.flexure.models.potential_fit import fit_potential
 from tensegym.flexure.models.potential_residual import predict, scaled
+from tensegym.flexure.models.potential_terms import mask_of
 
 L = 0.04
 
@@ -65,7 +65,7 @@ def test_ten_starts_and_seeds_end_alike(name, cases):
 def test_the_linear_start_alone_is_near(name, cases):
     """The start is already a joint within 0.2 mm: nothing hangs on where the descent begins."""
     from tensegym.flexure.models.potential import Potential
-    from tensegym.flexure.models.potential_fit import linear_start
+    from tensegym.flexure.models.potential_start import linear_start
 
     hinge, box, test, reference = cases[name]
     states = fit_states(hinge, box)
@@ -147,7 +147,7 @@ def test_too_few_states_and_states_without_load():
 
 def test_what_one_load_path_cannot_tell_is_said():
     """A force across the arm alone says nothing of how the axial compliance grows with rotation."""
-    from tensegym.flexure.models.joint import arm_sweep
+    from tensegym.flexure.fem.arm_sweep import arm_sweep
 
     fit = fit_potential(arm_sweep(preset("leaf-spring"), 0.5, 60), L)
     assert fit.unidentified

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
-from tensegym.flexure.fem import solve as fem
+from tensegym.flexure import fem
 from tensegym.flexure.hinge.presets import leaf_spring
 
 LENGTH, THICKNESS = 0.04, 0.04e-4  # so thin that stretch, about (t / L)^2, is below every tolerance here

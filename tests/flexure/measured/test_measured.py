@@ -7,10 +7,10 @@ import pytest
 from stand_pictures import save, stand
 
 from tensegym.errors import FlexureError, InputError
-from tensegym.flexure.fem import solve as fem
+from tensegym.flexure import fem
 from tensegym.flexure.fem.sampling import default_box, fit_states, held_out_states, moment_at
-from tensegym.flexure.hinge.presets import leaf_spring, preset, x_hinge
-from tensegym.flexure.hinge.states import States
+from tensegym.flexure.hinge import States, preset
+from tensegym.flexure.hinge.presets import leaf_spring, x_hinge
 from tensegym.flexure.measured.measured_file import read_measured
 from tensegym.flexure.measured.measured_fit import fit_measured
 from tensegym.flexure.measured.noisy_fit import fit_noisy

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge.states import States, join
+from tensegym.flexure.hinge import States, join
 
 
 def _states(n):

@@ -1,0 +1,52 @@
+"""Mesh: a hinge as flat arrays, for the compiled FEM."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tensegym.arrays import FloatArray, IntArray
+from tensegym.errors import FlexureError
+from tensegym.flexure.hinge import GROUND, TIP, Hinge
+
+ELEMENTS = 16  # a leaf as long as the hinge: exact to the elastica within 3e-7 L
+
+
+class Mesh(NamedTuple):
+    """A hinge as flat arrays. Body 0 is the ground, the last the tip; a body's pose is (x, y, turn) of its point."""
+
+    ends: IntArray
+    """(m, 4) of each leaf: start body, end body, number of elements, first node."""
+    real: FloatArray
+    """(m, 9) columns named in chain.py; AX..BY: leaf end from its body's point, in base axes at rest."""
+    rest: FloatArray
+    """(b, 3) pose of every body at rest."""
+
+
+def mesh_of(hinge: Hinge, elements: int = ELEMENTS) -> Mesh:
+    """Flat arrays of a hinge; ``elements`` for a leaf as long as the hinge, others in proportion, 4 at least."""
+    if not 1 <= elements <= 2000:
+        raise FlexureError(f"elements = {elements} is outside [1, 2000]; 16 is exact to the elastica within 3e-7 L")
+    order = [GROUND, *(b for b in hinge.bodies if b not in (GROUND, TIP)), TIP]
+    points: dict[str, list[tuple[float, float]]] = {body: [] for body in order}
+    for leaf in hinge.leaves:
+        points[leaf.start_body].append(leaf.start)
+        points[leaf.end_body].append(leaf.end)
+    rest = np.zeros((len(order), 3))
+    for i, body in enumerate(order[1:-1], start=1):
+        rest[i, :2] = np.mean(points[body], axis=0)
+    rest[-1, 0] = hinge.length
+    ends, real, first = [], [], 0
+    modulus = hinge.material.effective_modulus
+    for leaf in hinge.leaves:
+        count = max(min(elements, 4), round(elements * leaf.length / hinge.length))
+        a, b = order.index(leaf.start_body), order.index(leaf.end_body)
+        dx, dy = leaf.end[0] - leaf.start[0], leaf.end[1] - leaf.start[1]
+        area = leaf.width * leaf.thickness
+        ends.append((a, b, count, first))
+        real.append((leaf.length / count, dx / leaf.length, dy / leaf.length, modulus * area,
+                     modulus * area * leaf.thickness**2 / 12, leaf.start[0] - rest[a, 0], leaf.start[1] - rest[a, 1],
+                     leaf.end[0] - rest[b, 0], leaf.end[1] - rest[b, 1]))  # fmt: skip
+        first += count + 1
+    return Mesh(np.array(ends, dtype=np.int64), np.array(real), rest)
