@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 
 from tensegym.report import Report, table
-from tensegym.validation.checks import ALL
+from tensegym.validation import TOPICS
 
 
 @dataclass(frozen=True)
@@ -13,11 +13,11 @@ class Validate:
     """Measure the closed-form physics on the running code: expected, measured, tolerance, one row each."""
 
     def run(self) -> Report:
-        checks = [check for group in ALL for check in group()]
-        rows = [[c.id, c.quantity, f"{c.expected:.7g}", f"{c.measured:.7g}", f"{c.tolerance:.2g}",
+        checks = [check for rows_of in TOPICS.values() for check in rows_of()]
+        lines = [[c.id, c.quantity, f"{c.expected:.7g}", f"{c.measured:.7g}", f"{c.tolerance:.2g}",
                  "pass" if c.passed else "FAIL"] for c in checks]  # fmt: skip
         passed = sum(c.passed for c in checks)
-        text = table(["id", "quantity", "expected", "measured", "tolerance", ""], rows)
+        text = table(["id", "quantity", "expected", "measured", "tolerance", ""], lines)
         text += f"\n{passed} of {len(checks)} pass"
         data = {"checks": [asdict(c) | {"passed": c.passed} for c in checks], "passed": passed, "total": len(checks)}
         return Report(text, data, passed=passed == len(checks))

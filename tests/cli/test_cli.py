@@ -458,15 +458,15 @@ def test_bad_designs_give_one_line_and_nothing_is_written(command, toml, words, 
 
 
 def test_validate_gives_its_table_as_one_json_object(cli, monkeypatch):
-    from tensegym.validation import checks
+    from tensegym.validation import TOPICS
 
-    quick = (checks.statics, checks.geometry, checks.drive_figures)
-    monkeypatch.setattr("tensegym.cli.validate.ALL", quick)
+    quick = {name: TOPICS[name] for name in ("statics", "geometry", "drives")}
+    monkeypatch.setattr("tensegym.cli.validate.TOPICS", quick)
     status, text, _ = cli("validate", "--json")
     assert status == 0
     assert text.count("\n") == 1
     data = json.loads(text)
-    assert data["passed"] == data["total"] == sum(1 for group in quick for _ in group())
+    assert data["passed"] == data["total"] == sum(1 for rows_of in quick.values() for _ in rows_of())
     assert set(data["checks"][0]) == {"id", "quantity", "expected", "measured", "tolerance", "passed"}
     status, text, _ = cli("validate")
     assert status == 0
@@ -474,12 +474,12 @@ def test_validate_gives_its_table_as_one_json_object(cli, monkeypatch):
 
 
 def test_validate_exits_1_when_a_check_fails(cli, monkeypatch):
-    from tensegym.validation import checks
+    from tensegym.validation import TOPICS, Check
 
     def wrong():
-        yield checks.Check("S1", "one that fails", 1.0, 1.1, 0.05)
+        yield Check("S1", "one that fails", 1.0, 1.1, 0.05)
 
-    monkeypatch.setattr("tensegym.cli.validate.ALL", (wrong, checks.geometry))
+    monkeypatch.setattr("tensegym.cli.validate.TOPICS", {"wrong": wrong, "geometry": TOPICS["geometry"]})
     status, text, _ = cli("validate")
     assert status == 1
     assert text.count("FAIL") == 1

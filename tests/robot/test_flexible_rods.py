@@ -18,7 +18,8 @@ from tensegym.physics.robot_arrays import cable_arrays, mobility_at_rest
 from tensegym.robot.modes import design_modes
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.structure.modes import free_modes
-from tensegym.validation.checks import equal_rods, free_flight
+from tensegym.validation.breathing import equal_rods
+from tensegym.validation.flight import free_flight
 
 LOOSE = RodFlexure(rods="all", loss_time=0.0)
 
