@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 
 def require_matplotlib() -> None:
@@ -13,8 +13,9 @@ def require_matplotlib() -> None:
 
 
 def new_figure(
-    rows: int = 1, columns: int = 1, *, size: tuple[float, float], layout: str = "constrained", **options: Any
-) -> tuple[Any, Any]:
+    rows: int = 1, columns: int = 1, *, size: tuple[float, float], layout: Literal["constrained", "tight"] = "constrained",
+    **options: Any,
+) -> tuple[Any, Any]:  # fmt: skip
     """A figure and its axes: one, (n,) or (rows, columns) of them, as ``Figure.subplots`` squeezes.
 
     The figure belongs to no window and to no list of open figures, so nothing has to be closed.

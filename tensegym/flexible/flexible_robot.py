@@ -28,9 +28,30 @@ from .tree_kernel import frames
 class FlexibleRobot:
     """A URDF's robot in a world of its own. Its joints are free of motors; flexures and ``torques`` move them.
 
-    pose: of the URDF's base link, position [m] and quaternion xyzw. ``scheme``: trapezoid (step_kernel.py), linear (its
-    first Newton iteration) or explicit (forces of the state as it is, stable for dt < 2 / the fastest frequency).
-    A context manager. Raises FlexureError for a URDF that is none, FileNotFoundError for a path that is not there.
+    A context manager. Build flexures in with ``FlexureJoint(robot, "knee", joint)``.
+
+    Args:
+        urdf: path of the file; it stays as it is.
+        dt: time step [s].
+        gravity: (3,) in the world [m/s^2].
+        pose: (7,) of the URDF's base link in the world, position [m] and quaternion xyzw.
+        fixed_base: the base link does not move.
+        ground: add the plane z = 0.
+        friction: Coulomb coefficient between robot and ground.
+        scheme: trapezoid (step_kernel.py), linear (its first Newton iteration) or explicit (forces of the state as it
+            is, stable for dt < 2 / the fastest frequency).
+        gui: open PyBullet's window.
+
+    Attributes:
+        joints: column of every moving joint by name.
+        links: row of every link by name.
+        flexures: the FlexureJoints by the joint they replaced.
+        torques: (j,) force or torque on every moving joint [N, N m], to be set.
+        loads: dead loads on links, to be set.
+
+    Raises:
+        FlexureError: for a URDF that is none or cannot mean what it says, or a value out of range.
+        FileNotFoundError: for a path that is not there.
     """
 
     def __init__(
@@ -93,8 +114,13 @@ class FlexibleRobot:
         self, joints: Mapping[str, float] | None = None, rates: Mapping[str, float] | None = None,
         pose: Sequence[float] | None = None, twist: Sequence[float] = (0.0,) * 6,
     ) -> None:  # fmt: skip
-        """Start anew: joint positions and rates by name (zero where not named), pose (7,) of the base link and velocity
-        (6,) of the base's centre, linear and angular in the world. A flexure's tip is placed with ``place_tip``.
+        """Start anew. A flexure's tip is placed with ``place_tip``.
+
+        Args:
+            joints: positions by name [m, rad], zero where not named.
+            rates: of the joints by name [m/s, rad/s], zero where not named.
+            pose: (7,) of the base link in the world, default: the robot's own.
+            twist: (6,) velocity of a floating base's centre, linear [m/s] and angular [rad/s] in the world.
         """
         where = self.base_pose if pose is None else _finite("pose", pose, 7)
         state, tree, turn = self._stepper, self._stepper.tree, Rotation.from_quat(where[3:])
@@ -156,7 +182,7 @@ class FlexibleRobot:
     def momentum(self) -> FloatArray:
         """(6,) linear momentum [N s] and angular momentum about the world's origin [N m s], now."""
         state = self._stepper
-        return kernel.momentum(state.tree, state.base, state.positions, self.velocities)
+        return np.asarray(kernel.momentum(state.tree, state.base, state.positions, self.velocities))
 
     def link_pose(self, link: str) -> tuple[FloatArray, FloatArray]:
         """Position (3,) and rotation matrix (3, 3) of a link's URDF frame in the world."""

@@ -47,18 +47,31 @@ class Outside:
 
 
 class FlexureJoint:
-    """The revolute joint ``joint`` of a robot replaced by a fitted flexure; reloads the robot, at rest.
+    """A revolute joint of a robot replaced by a fitted flexure; reloads the robot, at rest.
 
-    The hinge's base frame has its z along the URDF joint's axis, its x along ``along`` (a vector in the joint's frame
-    across the axis; default: the joint frame's x, or y where the axis is x), and stands so that the URDF's axis passes
-    through the hinge at the fraction ``centre`` of its length: no link moves when the joint is put in.
+    The hinge's base frame has its z along the URDF joint's axis, its x along ``along``, and stands so that the URDF's
+    axis passes through the hinge at the fraction ``centre`` of its length: no link moves when the joint is put in.
 
-    model: a fitted Joint (its ``kind`` is taken: potential, planar or torsion), one of its models with the ``box`` it
-    holds on, or the path of a joint file. The tip moves in the plane; z and the turns about y and x are held, or have
-    the stiffnesses ``across`` (N/m, N m/rad, N m/rad), all about the tip. ``loss_time`` [s] is the structural damping
-    B = loss_time x K(q), Kelvin-Voigt; a mode of frequency w [rad/s] then has the damping ratio loss_time w / 2.
+    Args:
+        robot: a FlexibleRobot.
+        joint: name of its revolute joint.
+        model: a fitted Joint, one of its models with the ``box`` it holds on, or the path of a joint file.
+        kind: which model of a Joint: potential, planar or torsion.
+        box: where the model holds; default: the Joint's or the Potential's own.
+        along: (3,) the hinge's x in the URDF joint's frame, across the axis; default: the part of the frame's x across
+            the axis, or of y where the axis is nearly x.
+        centre: where on the hinge's length the URDF joint's axis passes, as a fraction.
+        loss_time: structural damping B = loss_time x K(q), Kelvin-Voigt [s]; a mode of frequency w [rad/s] then has
+            the damping ratio loss_time w / 2.
+        across: (3,) stiffnesses of z [N/m] and of the turns about y and x [N m/rad], all about the tip; without it
+            these three are held.
 
-    Raises FlexureError for a joint that is not there or not revolute, a model without an energy, one without a limit.
+    Attributes:
+        outside: how far it has been outside the box since the robot was placed.
+
+    Raises:
+        FlexureError: for a joint that is not there or not revolute, a model without an energy, one without a limit, a
+            value out of range.
     """
 
     def __init__(

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tensegym.arrays import FloatArray
+from tensegym.arrays import FloatArray, IntArray
 from tensegym.errors import FlexureError
 from tensegym.flexure.hinge import Box
 from tensegym.flexure.models.planar_spring import PlanarSpring
@@ -24,9 +23,9 @@ Spring = Potential | PlanarSpring | TorsionSpring
 class Springs(NamedTuple):
     """One row a flexure joint. A named tuple, as compiled functions take one."""
 
-    kind: NDArray[np.int64]
+    kind: IntArray
     """(f,) POTENTIAL, PLANAR or TORSION of spring_kernel."""
-    columns: NDArray[np.int64]
+    columns: IntArray
     """(f, 6) columns of x, y, theta, z, turn about y, turn about x among the moving joints; -1 where held."""
     coefficients: FloatArray
     """(f, 8, d) of the potentials, padded with zeros."""

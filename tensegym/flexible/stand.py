@@ -71,10 +71,23 @@ def build_stand(joint: Joint, *, dt: float = 1e-3, loss_time: float = 0.0,
 
 
 def arm_state(model: Model, theta: float, limit: float) -> tuple[float, FloatArray]:
-    """Force [N] along y at the arm's end that holds ``theta`` [rad], within +-limit, and the tip (2,) there [m]."""
+    """How the arm is held at an angle.
+
+    Args:
+        model: of the joint.
+        theta: [rad].
+        limit: largest force either way [N].
+
+    Returns:
+        Force along y at the arm's end [N], and the tip (2,) there [m].
+
+    Raises:
+        FlexureError: where no force within the limit holds it.
+    """
 
     def miss(force: float) -> float:
-        return float(model.poses(np.array([theta]), np.array([[0.0, force]])).moment[0]) - ARM * force * np.cos(theta)
+        moment = model.poses(np.array([theta]), np.array([[0.0, force]])).moment[0]
+        return float(moment - ARM * force * np.cos(theta))
 
     if miss(-limit) * miss(limit) > 0:
         raise FlexureError(f"no force up to {limit:.4g} N at the arm's end holds {np.degrees(theta):.4g} deg")
@@ -84,8 +97,19 @@ def arm_state(model: Model, theta: float, limit: float) -> tuple[float, FloatArr
 
 def pull(joint: Joint, count: int = 31, *, max_angle: float | None = None, picture: tuple[int, int] | None = None,
          dt: float = 1e-3) -> Pull:  # fmt: skip
-    """Move the carriage through ``count`` places that take the arm over +-max_angle (default: 98 % of the fitted one),
-    wait until all is at rest, read. ``picture``: width and height of the pictures [px]."""
+    """Move the carriage from place to place; at each wait until all is at rest, and read.
+
+    Args:
+        joint: of a hinge of 40 mm.
+        count: places, even over the range.
+        max_angle: half range of the arm [rad]; default: 98 % of the fitted one.
+        picture: width and height of the pictures [px]; none without.
+        dt: time step [s].
+
+    Raises:
+        FlexureError: for a hinge that the stand does not take.
+        SimulationError: where it does not come to rest.
+    """
     angle = 0.98 * joint.box.max_angle if max_angle is None else max_angle
     robot, flexure = build_stand(joint, dt=dt, loss_time=SETTLING)
     with robot:
@@ -124,7 +148,8 @@ def picture_of(robot: FlexibleRobot, size: tuple[int, int]) -> NDArray[np.uint8]
     width, height = size
     rgb, _ = robot.world.camera.image(EYE, TARGET, 2 * width, 2 * height)
     fine = rgb.reshape(height, 2, width, 2, 3).astype(float)
-    return np.round(fine.mean(axis=(1, 3))).astype(np.uint8)
+    coarse: NDArray[np.uint8] = np.round(fine.mean(axis=(1, 3))).astype(np.uint8)
+    return coarse
 
 
 @dataclass(frozen=True)
@@ -158,7 +183,16 @@ class Vibration:
 
 def release(joint: Joint, angle: float, seconds: float, *, dt: float = 1e-3, loss_time: float = 0.0,
             kind: str = "potential") -> Vibration:  # fmt: skip
-    """Hold the arm at ``angle`` [rad] by its end and let go."""
+    """Hold the arm at an angle by its end and let go.
+
+    Args:
+        joint: of a hinge of 40 mm.
+        angle: [rad].
+        seconds: how long it is followed [s].
+        dt: time step [s].
+        loss_time: structural damping B = loss time x K [s].
+        kind: which of the joint's models.
+    """
     robot, flexure = build_stand(joint, dt=dt, loss_time=loss_time, kind=kind)
     with robot:
         _, tip = arm_state(flexure.spring, angle, joint.box.max_force)

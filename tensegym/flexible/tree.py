@@ -5,13 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from tensegym.arrays import FloatArray
+from tensegym.arrays import FloatArray, IntArray
 from tensegym.bullet import FIXED, Articulated
-
-IntArray = NDArray[np.int64]
 
 
 class Tree(NamedTuple):

@@ -24,7 +24,8 @@ print(*sorted(set(sys.modules) - before))
 
 def loaded(*parts):
     """Modules that these parts of the shelf bring, all of their files imported in a process of its own."""
-    done = subprocess.run([sys.executable, "-c", LOADED.format(parts=parts)], capture_output=True, text=True, check=True)
+    code = LOADED.format(parts=parts)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     return set(done.stdout.split())
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from tensegym.arrays import FloatArray
 
 from .sighting import Sighting
 
@@ -19,7 +20,7 @@ class BaseFrame:
     marker: tuple[float, float] = (0.0, 0.0)
     """Marker's centre in base axes [m]"""
 
-    def pose(self, seen: Sighting, arm_length: float, arm_start: float = 0.0) -> tuple[float, NDArray[np.float64]]:
+    def pose(self, seen: Sighting, arm_length: float, arm_start: float = 0.0) -> tuple[float, FloatArray]:
         """Angle [rad] in (-pi, pi] and tip (2,) [m] of the hinge in base axes.
 
         ``arm_length`` [m] is the painted arm's, ``arm_start`` [m] how far along the arm beyond the tip it begins.
@@ -39,6 +40,6 @@ def frame_at_rest(seen: Sighting, arm_length: float, tip_at_rest: float, arm_sta
     return BaseFrame(seen.angle, (float(x), float(y)))
 
 
-def _turned(vector: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
+def _turned(vector: FloatArray, angle: float) -> FloatArray:
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, -s], [s, c]]) @ vector

@@ -28,9 +28,15 @@ class Coefficient:
 def judge(names: Sequence[str], values: FloatArray, sizes: FloatArray, slopes: FloatArray) -> tuple[Coefficient, ...]:
     """Every coefficient with its standard error and, if the data cannot identify it, the reason.
 
-    values, sizes (p,): what was fitted and how large it may be expected to be; slopes (m, p): derivative of every
-    residual, in units of its noise, over every coefficient, in units of its size. The covariance is that of least
-    squares with the expected sizes as a weak normal prior, so directions the data do not see stay finite.
+    The covariance is that of least squares with the expected sizes as a weak normal prior, so directions the data do
+    not see stay finite.
+
+    Args:
+        names: (p) of the coefficients.
+        values: (p,) what was fitted.
+        sizes: (p,) how large each may be expected to be.
+        slopes: (m, p) derivative of every residual, in units of its noise, over every coefficient, in units of its
+            size.
     """
     covariance = np.linalg.inv(slopes.T @ slopes + np.eye(len(values)))
     error = np.sqrt(np.diag(covariance))

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from tensegym.arrays import FloatArray, IntArray
 from tensegym.errors import FlexureError
 
 LEAST_CONTRAST = 0.2
@@ -30,9 +31,9 @@ class Shape:
     """Its number in ``DarkShapes.labels``."""
     area: int
     """px"""
-    centre: NDArray[np.float64]
+    centre: FloatArray
     """(2,) row, column [px]"""
-    axis: NDArray[np.float64]
+    axis: FloatArray
     """(2,) unit vector of the long axis, row and column, sign arbitrary"""
     long: float
     """Length of the rectangle with the same second moments [px]"""
@@ -46,14 +47,14 @@ class Shape:
 class DarkShapes:
     """Dark shapes of one picture, largest first."""
 
-    darkness: NDArray[np.float64]
+    darkness: FloatArray
     """(rows, columns) share of the light swallowed, 0 on the ground; uneven light is divided out."""
     labels: NDArray[np.int32]
     """(rows, columns) number of the shape a pixel belongs to, 0 for the ground."""
     shapes: tuple[Shape, ...]
 
 
-def darkness(grey: NDArray[np.float64]) -> NDArray[np.float64]:
+def darkness(grey: FloatArray) -> FloatArray:
     """Share of the light each pixel swallows, 0 on the ground, (rows, columns).
 
     The light ground is a cubic surface fitted to the pixels, those much darker than the surface left out in turn: a
@@ -84,7 +85,7 @@ def darkness(grey: NDArray[np.float64]) -> NDArray[np.float64]:
     return 1.0 - grey / ground
 
 
-def threshold(dark: NDArray[np.float64]) -> float:
+def threshold(dark: FloatArray) -> float:
     """Darkness half way between ground (0) and paint, found by repeated means (Ridler and Calvard, 1978).
 
     ``dark`` (rows, columns). Raises FlexureError if nothing is dark enough to be paint.
@@ -104,7 +105,7 @@ def threshold(dark: NDArray[np.float64]) -> float:
     return paint / 2.0
 
 
-def find_dark_shapes(grey: NDArray[np.float64], least_area: int = 12) -> DarkShapes:
+def find_dark_shapes(grey: FloatArray, least_area: int = 12) -> DarkShapes:
     """Binarise a picture (rows, columns) and measure its dark shapes of at least ``least_area`` px, largest first.
 
     Raises FlexureError for a picture without contrast.
@@ -122,7 +123,7 @@ def find_dark_shapes(grey: NDArray[np.float64], least_area: int = 12) -> DarkSha
     return DarkShapes(dark, labels.astype(np.int32), tuple(_measure(labels, int(k), boxes[k - 1]) for k in order))
 
 
-def alone(dark: DarkShapes, shape: Shape, margin: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def alone(dark: DarkShapes, shape: Shape, margin: int) -> tuple[FloatArray, IntArray]:
     """Darkness around one shape, ``margin`` px wider than it, and the (2,) row, column of that window's corner.
 
     Other shapes and their grey rims are painted over with ground, so that they cannot pull a measurement.

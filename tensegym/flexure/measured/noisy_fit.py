@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from tensegym.arrays import FloatArray
@@ -39,10 +40,17 @@ class NoisyFit:
 
 
 def fit_noisy(states: States, length: float, *, box: Box | None = None, symmetry: str = "both") -> NoisyFit:
-    """Fit a potential to measured ``states`` of a hinge of rest length L [m]; states not whole are passed over.
+    """Fit a potential to measured states of a hinge.
 
-    box: where it is to be valid; default: the states' own. symmetry: as ``fit_potential``. Raises FlexureError on fewer
-    states than coefficients, on states that do not turn, or that resist turning the wrong way.
+    Args:
+        states: those that are not whole are passed over.
+        length: rest length L [m].
+        box: where it is to be valid; default: the states' own.
+        symmetry: both, axis or none; see ``symmetry_of``.
+
+    Raises:
+        FlexureError: on fewer states than coefficients, on states that do not turn, or that resist turning the wrong
+            way.
     """
     states, mask = states.whole(), mask_of(symmetry)
     if len(states) < mask.sum():
@@ -78,7 +86,7 @@ def box_of(states: States, length: float) -> Box:
     return Box(angle, float(np.abs(states.force).max()) or scale / length)
 
 
-def _descend(first: FloatArray, prior: Prior, mask: np.ndarray, data: Data, tip_noise: float,
+def _descend(first: FloatArray, prior: Prior, mask: NDArray[np.bool_], data: Data, tip_noise: float,
              moment_noise: float) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """Most likely coefficients (8, degree + 1), and the Jacobian (3n, p) in units of noise over expected size."""
     centre, size = prior.mean[mask], prior.size[mask]
@@ -100,7 +108,7 @@ def _descend(first: FloatArray, prior: Prior, mask: np.ndarray, data: Data, tip_
 
     def seen(z: FloatArray) -> FloatArray:
         parts = predict(unpack(z), data)[3][:, :, mask] * size * weights[:, None, None]
-        return parts.reshape(-1, len(z))
+        return np.asarray(parts.reshape(-1, len(z)))
 
     result = least_squares(residual, (first[mask] - centre) / size, jac=lambda z: np.vstack([seen(z), np.eye(len(z))]),
                            method="lm", xtol=1e-10, ftol=1e-10, gtol=1e-10, max_nfev=200)  # fmt: skip

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
@@ -31,10 +32,15 @@ class Prior:
     size: FloatArray
 
 
-def noisy_start(data: Data, mask: np.ndarray) -> Prior:
-    """The expected coefficients of the joint behind noisy ``data``; ``mask`` (8, degree + 1) says which are fitted.
+def noisy_start(data: Data, mask: NDArray[np.bool_]) -> Prior:
+    """The expected coefficients of the joint behind noisy data.
 
-    Raises FlexureError if the moment turns against the angle.
+    Args:
+        data: the states in the joint's units.
+        mask: (8, degree + 1) which coefficients are fitted.
+
+    Raises:
+        FlexureError: if the moment turns against the angle.
     """
     u, f = data.u, powers(data.u, mask.shape[1] - 1)[0]
     energy_slope = data.m - 0.5 * (data.n * data.ey - data.q * data.ex)

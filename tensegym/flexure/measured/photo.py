@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError, InputError
 
 from .sighting import Sighting
@@ -25,7 +25,7 @@ def _pillow(module: str) -> Any:
         raise FlexureError("reading pictures needs Pillow: pip install pillow, or tensegym[train]") from error
 
 
-def read_grey(path: Path) -> NDArray[np.float64]:
+def read_grey(path: Path) -> FloatArray:
     """Grey levels (rows, columns) of a picture file, turned upright as its camera noted, clear parts taken as white.
 
     Raises InputError naming a file that is no picture, FileNotFoundError if it is not there.
@@ -47,7 +47,7 @@ def read_grey(path: Path) -> NDArray[np.float64]:
     return grey
 
 
-def draw_overlay(grey: NDArray[np.float64], seen: Sighting, path: Path) -> None:
+def draw_overlay(grey: FloatArray, seen: Sighting, path: Path) -> None:
     """Save the picture (rows, columns) as PNG with the arm's middle line in red and the marker's centre in blue.
 
     A ring marks the hinge end, a bar across the arm each end.

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
 
 from .dark_shapes import DarkShapes, Shape, alone, find_dark_shapes
@@ -34,11 +35,11 @@ class Sighting:
     """Direction from hinge end to free end, counterclockwise from the picture's right [rad]"""
     angle_error: float
     """Standard error of ``angle`` from the scatter of the arm's middle line [rad]"""
-    hinge_end: NDArray[np.float64]
+    hinge_end: FloatArray
     """(2,) [px]"""
-    free_end: NDArray[np.float64]
+    free_end: FloatArray
     """(2,) [px]"""
-    marker: NDArray[np.float64]
+    marker: FloatArray
     """(2,) centre of the marker [px]"""
     width: float
     """Width of the arm [px]"""
@@ -47,12 +48,12 @@ class Sighting:
         """Scale of the picture for an arm of ``arm_length`` [m]."""
         return arm_length / float(np.linalg.norm(self.free_end - self.hinge_end))
 
-    def from_marker(self, arm_length: float) -> NDArray[np.float64]:
+    def from_marker(self, arm_length: float) -> FloatArray:
         """(2,) hinge end of the arm seen from the marker [m], picture axes with y upward."""
         return (self.hinge_end - self.marker) * (1.0, -1.0) * self.metres_per_pixel(arm_length)
 
 
-def sight(grey: NDArray[np.float64]) -> Sighting:
+def sight(grey: FloatArray) -> Sighting:
     """Find arm and marker in a grey picture (rows, columns), to a fraction of a pixel.
 
     Raises FlexureError: no contrast, no arm, no marker, several of one, an arm that is cut by the picture's edge, too
@@ -94,15 +95,16 @@ def _the_marker(shapes: tuple[Shape, ...], arm: Shape) -> Shape:
     return spots[0]
 
 
-def _centroid(dark: DarkShapes, shape: Shape) -> NDArray[np.float64]:
+def _centroid(dark: DarkShapes, shape: Shape) -> FloatArray:
     """(2,) row, column of the centre of darkness [px]: grey rims place it between pixels."""
     margin = max(3, round(shape.short / 8.0))
     weights, corner = alone(dark, shape, margin)
     rows, columns = np.indices(weights.shape)
-    return np.array([np.vdot(weights, rows), np.vdot(weights, columns)]) / weights.sum() + corner
+    centre: FloatArray = np.array([np.vdot(weights, rows), np.vdot(weights, columns)]) / weights.sum() + corner
+    return centre
 
 
-def _middle_line(dark: DarkShapes, arm: Shape) -> tuple[NDArray[np.float64], float, float]:
+def _middle_line(dark: DarkShapes, arm: Shape) -> tuple[FloatArray, float, float]:
     """Ends (2, 2) as row, column [px], width [px] and standard error of the direction [rad] of the arm.
 
     The picture is resampled along and across the arm. Its middle line is the straight line through the centres of
@@ -136,7 +138,7 @@ def _middle_line(dark: DarkShapes, arm: Shape) -> tuple[NDArray[np.float64], flo
     return ends + corner, width, float(np.sqrt(covariance[0, 0])) * _inflation(scatter)
 
 
-def _usual(breadth: NDArray[np.float64], level: float) -> NDArray[np.bool_]:
+def _usual(breadth: FloatArray, level: float) -> NDArray[np.bool_]:
     """The longest run of cross sections of about the usual breadth ``level``, a twentieth cut off at each end, (n,)."""
     labels, count = ndimage.label((breadth > 0.6 * level) & (breadth < 1.6 * level))
     if not count:
@@ -148,7 +150,7 @@ def _usual(breadth: NDArray[np.float64], level: float) -> NDArray[np.bool_]:
     return inner
 
 
-def _end(core: NDArray[np.float64], breadth: NDArray[np.float64], reach: NDArray[np.float64],
+def _end(core: FloatArray, breadth: FloatArray, reach: FloatArray,
          inner: NDArray[np.bool_], width: float) -> float:  # fmt: skip
     """Where along ``reach`` (n,), zero at the arm's middle, the arm ends [px].
 
@@ -168,7 +170,7 @@ def _end(core: NDArray[np.float64], breadth: NDArray[np.float64], reach: NDArray
     return end
 
 
-def _falls(profile: NDArray[np.float64], reach: NDArray[np.float64], level: float) -> float:
+def _falls(profile: FloatArray, reach: FloatArray, level: float) -> float:
     """Where ``profile`` (n,) first falls through ``level`` beyond reach 0; infinite if it does not."""
     order = np.argsort(reach)
     profile, reach = profile[order], reach[order]
@@ -179,7 +181,7 @@ def _falls(profile: NDArray[np.float64], reach: NDArray[np.float64], level: floa
     return float(np.interp(level, [profile[k], profile[k - 1]], [reach[k], reach[k - 1]]))
 
 
-def _inflation(scatter: NDArray[np.float64]) -> float:
+def _inflation(scatter: FloatArray) -> float:
     """How much larger a standard error is than least squares says, for neighbours (n,) that err together."""
     power = float(scatter @ scatter)
     together = sum(float(scatter[k:] @ scatter[:-k]) for k in range(1, 5)) / power if power > 0.0 else 0.0

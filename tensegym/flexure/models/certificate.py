@@ -37,7 +37,12 @@ class Certificate:
 
 
 def lower_bound(coefficients: FloatArray, depth: int = DEPTH) -> float:
-    """A proven lower bound of a polynomial (lowest power first) on [-1, 1], sharp within about 1e-3 of its size."""
+    """A proven lower bound of a polynomial on [-1, 1], sharp within about 1e-3 of its size.
+
+    Args:
+        coefficients: (degree + 1,) lowest power first.
+        depth: times the interval is halved at most.
+    """
     degree = len(coefficients) - 1
     shifted = np.zeros(degree + 1)  # over t in [0, 1], u = 2 t - 1
     for i, value in enumerate(coefficients):
@@ -89,7 +94,17 @@ def certify(potential: Potential) -> Certificate:
 
 
 def rotation_stiffness(potential: Potential, theta: FloatArray, force: FloatArray) -> FloatArray:
-    """(n,) dM/dtheta at constant force [N m/rad]; a state with a negative one is unstable under its dead load."""
+    """dM/dtheta at constant force; a state with a negative one is unstable under its dead load.
+
+    Args:
+        potential: the joint.
+        theta: (n,) [rad].
+        force: (n, 2) at the tip in base axes [N].
+
+    Returns:
+        (n,) [N m/rad].
+    """
     states = potential.poses(theta, force)
     k = potential.stiffnesses(np.column_stack([states.tip, states.theta]))
-    return k[:, 2, 2] - np.einsum("ni,ni->n", k[:, 2, :2], np.linalg.solve(k[:, :2, :2], k[:, :2, 2:])[:, :, 0])
+    given = np.einsum("ni,ni->n", k[:, 2, :2], np.linalg.solve(k[:, :2, :2], k[:, :2, 2:])[:, :, 0])
+    return np.asarray(k[:, 2, 2] - given)

@@ -32,14 +32,26 @@ class Answer:
 
 
 def solve_fem(hinge: Hinge, loads: FloatArray, elements: int = fem.ELEMENTS) -> list[Answer]:
-    """Answers to loads (n, 3) force x, y [N] and moment [N m] at the tip, each applied from rest in proportion."""
+    """Where the FEM stands under loads, each applied from rest in proportion.
+
+    Args:
+        hinge: what is loaded.
+        loads: (n, 3) dead force x, y at the tip in base axes [N] and moment about the tip [N m].
+        elements: of a leaf as long as the hinge.
+    """
     solution = fem.apply_wrench(hinge, loads, elements=elements)
     columns = np.column_stack([solution.theta, solution.tip, solution.energy]).tolist()
     return [Answer(t, x, y, energy, solution.reason(i)) for i, (t, x, y, energy) in enumerate(columns)]
 
 
 def solve_model(model: Model, box: Box, loads: FloatArray) -> list[Answer]:
-    """Answers of a fitted model: a root of M(theta) at the load's force, bracketed. A load outside gets a reason."""
+    """Where a fitted model stands under loads: a root of M(theta) at the load's force, bracketed.
+
+    Args:
+        model: of a joint.
+        box: where it was fitted; a load outside gets a reason in place of a pose.
+        loads: (n, 3) as ``solve_fem``.
+    """
     return [_solve_one(model, box, load) for load in loads]
 
 

@@ -38,10 +38,17 @@ class Choice:
 
 
 def choose_model(hinge: Hinge, accepted: float, *, loads: str = "arm", joint: Joint | None = None) -> Choice:
-    """The simplest of the torsion spring, the planar spring and the potential with tip errors up to ``accepted`` [m].
+    """The simplest of the torsion spring, the planar spring and the potential whose tip errors are accepted.
 
-    loads: "arm" judges on the paper's sweep (a force across the arm, one load path); "box" also on random loads of the
-    joint's box. Raises FlexureError for an accepted error that is not positive.
+    Args:
+        hinge: what is to be modelled.
+        accepted: largest error of the tip [m], above 0.
+        loads: "arm" judges on the paper's sweep (a force across the arm, one load path); "box" also on random loads of
+            the joint's box.
+        joint: fitted to the hinge; without it the hinge is fitted now.
+
+    Raises:
+        FlexureError: for an accepted error that is not positive, or other loads.
     """
     check_positive("accepted", accepted, "m")
     if loads not in ("arm", "box"):

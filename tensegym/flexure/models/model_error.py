@@ -44,7 +44,13 @@ def tip_errors(model: JointModel, states: States) -> tuple[FloatArray, FloatArra
 
 
 def model_errors(model: JointModel, states: States, reference_moment: float) -> ModelError:
-    """Errors of one model on ``states``; the moment counts in units of ``reference_moment`` [N m]."""
+    """Errors of one model on states it has not seen.
+
+    Args:
+        model: what is judged.
+        states: whole ones.
+        reference_moment: unit in which moments count [N m].
+    """
     tip, moment = tip_errors(model, states)
     good = np.isfinite(tip) & np.isfinite(moment)
     tip, moment = tip[good], moment[good] / reference_moment

@@ -41,13 +41,19 @@ def random_loops(box: Box, count: int, seed: int) -> FloatArray:
     waves = np.concatenate([np.cos(np.outer(order, phase)), np.sin(np.outer(order, phase))])
     loops = rng.normal(size=(count, 3, 2 * HARMONICS)) @ waves + rng.normal(size=(count, 3, 1))
     loops *= rng.uniform(0.5, 1, (count, 3, 1)) / np.abs(loops).max(axis=2, keepdims=True)
-    return loops.transpose(0, 2, 1) * [box.max_angle, box.max_force, box.max_force]
+    return np.asarray(loops.transpose(0, 2, 1) * [box.max_angle, box.max_force, box.max_force])
 
 
 def loop_work(model: WrenchModel, potential: Potential, count: int = 100, seed: int = 7) -> LoopWork:
     """Work of a model's wrench around closed loops of its own poses, under load loops inside the potential's box.
 
-    The swing of energy is the potential's under the same loads. Derivatives along a loop are spectral.
+    Derivatives along a loop are spectral.
+
+    Args:
+        model: whose wrench.
+        potential: gives the box, and the energy's swing under the same loads.
+        count: of loops.
+        seed: of their shapes.
     """
     shares = []
     frequency = np.fft.rfftfreq(SAMPLES, 1 / SAMPLES)

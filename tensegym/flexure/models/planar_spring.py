@@ -27,7 +27,17 @@ from .potential_fit import MOMENT_UNIT, TIP_UNIT
 
 def spring_wrench(x: FloatArray, y: FloatArray, theta: FloatArray, kx: FloatArray | float, ky: FloatArray | float,
                   kz: FloatArray | float) -> tuple[FloatArray, FloatArray, FloatArray]:  # fmt: skip
-    """(f_x, f_y, m) of the equations above: force in the moving axes [N], moment about the moving origin [N m]."""
+    """Force in the moving axes and moment about the moving origin, by the equations above; arrays broadcast.
+
+    Args:
+        x, y: of the moving origin in the fixed frame [m].
+        theta: [rad].
+        kx, ky: [N/m].
+        kz: [N m/rad].
+
+    Returns:
+        f_x, f_y [N] and m [N m].
+    """
     c, s = np.cos(theta), np.sin(theta)
     mean = 0.5 * (kx + ky)
     f_x = kx * x * c + mean * y * s
@@ -45,7 +55,18 @@ def spring_energy(x: FloatArray, y: FloatArray, theta: FloatArray, kx: float, ky
 
 def spring_poses(theta: FloatArray, force: FloatArray, length: float, b: float, kx: FloatArray | float,
                  ky: FloatArray | float, kz: FloatArray | float) -> States:  # fmt: skip
-    """States of a spring placed at a = 1 - b, at theta (n,) under the dead force (n, 2) at the tip; linear in p."""
+    """States of a spring placed at a = 1 - b; its equations are linear in p.
+
+    Args:
+        theta: (n,) [rad].
+        force: (n, 2) dead force at the tip in base axes [N].
+        length: L [m].
+        b: link from the spring to the tip, of L.
+        kx, ky, kz: stiffnesses [N/m, N/m, N m/rad], numbers or (n,).
+
+    Returns:
+        The states, NaN where the spring has no stiffness.
+    """
     c, s = np.cos(theta), np.sin(theta)
     f_x, f_y = c * force[:, 0] + s * force[:, 1], c * force[:, 1] - s * force[:, 0]
     mean = 0.5 * (kx + ky)
@@ -97,7 +118,15 @@ class PlanarSpring:
 
 
 def fit_planar(states: States, length: float) -> PlanarSpring:
-    """b, kx, ky, kz by least squares on tip and moment over the states (the weights of the potential's fit)."""
+    """b, kx, ky, kz by least squares on tip and moment over the states, weighed as in the potential's fit.
+
+    Args:
+        states: those that are not whole are passed over.
+        length: L [m].
+
+    Raises:
+        FlexureError: for too few states, or states without rotation or moment.
+    """
     states = states.whole()
     if 3 * len(states) < 5:
         raise FlexureError(f"{len(states)} states; the planar spring's 4 coefficients need 2 or more")

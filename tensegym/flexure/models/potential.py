@@ -47,16 +47,21 @@ class Potential:
         object.__setattr__(self, "scales", np.array([self.length, self.moment_scale, self.angle_scale]))
 
     def wrench(self, x: float, y: float, theta: float) -> tuple[float, float, float]:
-        """Force x, y [N] in base axes and moment about the tip [N m] that hold the tip at (x, y) [m], theta [rad].
+        """The wrench that holds the tip at a pose. Not refused outside the box: a simulation may pass through.
 
-        Not refused outside the box: a simulation may pass through.
+        Args:
+            x, y: of the tip in base axes [m].
+            theta: [rad].
+
+        Returns:
+            Force x, y in base axes [N] and moment about the tip [N m].
         """
         fx, fy, moment, _ = kernel.wrench(self.coefficients, self.scales, x, y, theta)
         return fx, fy, moment
 
     def energy(self, x: float, y: float, theta: float) -> float:
         """V [J]."""
-        return kernel.wrench(self.coefficients, self.scales, x, y, theta)[3]
+        return float(kernel.wrench(self.coefficients, self.scales, x, y, theta)[3])
 
     def stiffness(self, x: float, y: float, theta: float) -> FloatArray:
         """(3, 3) symmetric Jacobian of the wrench over (x, y, theta)."""
@@ -66,16 +71,21 @@ class Potential:
 
     def wrenches(self, poses: ArrayLike) -> FloatArray:
         """(n, 3) wrenches of (n, 3) poses x, y, theta."""
-        return kernel.wrench_batch(self.coefficients, self.scales, _table(poses, 3, "poses"))[0]
+        return np.asarray(kernel.wrench_batch(self.coefficients, self.scales, _table(poses, 3, "poses"))[0])
 
     def stiffnesses(self, poses: ArrayLike) -> FloatArray:
         """(n, 3, 3) Jacobians of the wrench at (n, 3) poses x, y, theta."""
-        return kernel.stiffness_batch(self.coefficients, self.scales, _table(poses, 3, "poses"))
+        return np.asarray(kernel.stiffness_batch(self.coefficients, self.scales, _table(poses, 3, "poses")))
 
     def poses(self, theta: ArrayLike, force: ArrayLike) -> States:
-        """The states at theta (n,) [rad] under dead forces (n, 2) [N] at the tip, explicit.
+        """The states under given rotations and dead forces; explicit, nothing is solved for.
 
-        Raises FlexureError for a row outside the box.
+        Args:
+            theta: (n,) [rad].
+            force: (2,) or (n, 2) at the tip in base axes [N].
+
+        Raises:
+            FlexureError: for a row outside the box.
         """
         angle = np.ascontiguousarray(np.atleast_1d(np.asarray(theta, dtype=float)))
         forces = np.ascontiguousarray(np.broadcast_to(np.asarray(force, dtype=float), (len(angle), 2)))
@@ -86,7 +96,7 @@ class Potential:
     def energies(self, states: States) -> FloatArray:
         """(n,) V [J] at the poses of ``states``."""
         poses = np.column_stack([states.tip, states.theta])
-        return kernel.wrench_batch(self.coefficients, self.scales, poses)[1]
+        return np.asarray(kernel.wrench_batch(self.coefficients, self.scales, poses)[1])
 
     def _refuse(self, angle: FloatArray, force: FloatArray, guard: FloatArray) -> None:
         slack = 1 + 1e-9

@@ -37,7 +37,12 @@ class Placement:
 
 
 def torsion_lambda(states: States, length: float) -> float:
-    """lambda that minimises F1: the link of the 1-DoF model is lambda L. Bounded golden section, as fminbnd."""
+    """The fraction lambda that minimises F1: the link of the 1-DoF model is lambda L. Golden section, as fminbnd.
+
+    Args:
+        states: a sweep of 3 or more, tips measured.
+        length: L [m].
+    """
     _sweep(states)
     x, y = states.tip.T
 
@@ -51,22 +56,37 @@ def torsion_lambda(states: States, length: float) -> float:
 
 
 def spring_track(states: States, length: float, b: float) -> FloatArray:
-    """(n, 2) displacement (x_sp, y_sp) of the planar spring along the states with a = 1 - b [m]."""
+    """Displacement of the planar spring along the states, with a = 1 - b.
+
+    Args:
+        states: n of them.
+        length: L [m].
+        b: link from the spring to the tip, of L.
+
+    Returns:
+        (n, 2) x_sp, y_sp [m].
+    """
     c, s = np.cos(states.theta), np.sin(states.theta)
     return states.tip - length * np.column_stack([1 - b + b * c, b * s])
 
 
 def planar_placement(states: States, length: float, reading: str = "dx") -> Placement:
-    """a, b of the planar spring by gradient descent on the extents (scipy's SLSQP, where the paper used fmincon).
+    """Where the planar spring stands, by gradient descent on the extents (scipy's SLSQP; the paper used fmincon).
 
-    reading: "dx" minimises dx_sp alone, the one that gives the paper's Table 1; "F2" the printed objective.
+    Args:
+        states: a sweep of 3 or more, tips measured.
+        length: L [m].
+        reading: "dx" minimises dx_sp alone, which gives the paper's Table 1; "F2" the printed objective.
+
+    Raises:
+        FlexureError: for another reading, too few states, or states that do not turn.
     """
     _sweep(states)
     if reading not in READINGS:
         raise FlexureError(f"reading = {reading!r}; one of {', '.join(READINGS)}")
 
     def extent(b: float) -> FloatArray:
-        return np.ptp(spring_track(states, length, b), axis=0)
+        return np.asarray(np.ptp(spring_track(states, length, b), axis=0))
 
     def cost(b: float) -> float:
         d = extent(b) / length

@@ -44,11 +44,18 @@ class RodPin:
 @lru_cache(maxsize=256)
 def rod_pin(hinge: Hinge, before: float, after: float, max_angle: float, compression: float = 0.0,
             elements: int = fem.ELEMENTS) -> RodPin:  # fmt: skip
-    """The pin fitted by least squares to a hinge in a rod that equal and opposite end moments bend by +-``max_angle``.
+    """The pin fitted by least squares to a hinge in a rod that equal and opposite end moments bend.
 
-    before, after: rigid parts of the rod [m]; max_angle [rad], in (0, pi/2). ``compression`` [N] on the line of the
-    ends acts besides: the fit is then to the hinge as it bends in the loaded rod, where its moment varies along it.
-    Raises FlexureError as ``buckling_load``, and for an angle or a compression out of range.
+    Args:
+        hinge: symmetric about its axis.
+        before, after: rigid parts of the rod on the hinge's base and tip [m].
+        max_angle: largest bend either way [rad], in (0, pi/2).
+        compression: on the line of the rod's ends besides [N]: the fit is then to the hinge as it bends in the loaded
+            rod, where its moment varies along it.
+        elements: of a leaf as long as the hinge.
+
+    Raises:
+        FlexureError: as ``buckling_load``, and for an angle or a compression out of range.
     """
     check_parts(before, after)
     check_max_angle(max_angle)
@@ -74,9 +81,14 @@ def rod_pin(hinge: Hinge, before: float, after: float, max_angle: float, compres
 
 def rod_states(hinge: Hinge, theta: FloatArray, before: float, after: float, compression: float,
                elements: int = fem.ELEMENTS) -> States:  # fmt: skip
-    """States at theta (n,) [rad] of a hinge in a rod that moments bend, ``compression`` [N] along the line of its ends.
+    """States of a hinge in a rod that moments bend and that is compressed along the line of its ends.
 
-    before, after: rigid parts [m]. Raises FlexureError where the hinge does not reach them.
+    Args:
+        hinge, before, after, compression, elements: as ``rod_pin``.
+        theta: (n,) [rad].
+
+    Raises:
+        FlexureError: where the hinge does not reach them.
     """
     line = 0.5 * theta  # exact for a symmetric rod
     for _ in range(PASSES if compression else 1):

@@ -58,7 +58,16 @@ class StiffnessDiagram:
 
 
 def invert(states: States, length: float, b: float) -> tuple[FloatArray, FloatArray]:
-    """(n, 3) kx, ky, kz along the states, NaN where singular, and the (n,) guarded determinant |xi1 xi2|/|xi|^2."""
+    """The stiffnesses along the states.
+
+    Args:
+        states: n of one load path.
+        length: L [m].
+        b: link from the spring to the tip, of L.
+
+    Returns:
+        (n, 3) kx, ky [N/m], kz [N m/rad], NaN where singular, and the (n,) guarded determinant |xi1 xi2| / |xi|^2.
+    """
     theta = states.theta
     x, y = spring_track(states, length, b).T
     c, s = np.cos(theta), np.sin(theta)
@@ -81,7 +90,16 @@ def invert(states: States, length: float, b: float) -> tuple[FloatArray, FloatAr
 
 
 def fit_diagram(states: States, length: float, placement: Placement | None = None) -> StiffnessDiagram:
-    """The diagrams of one load path, the spring placed as the paper's Table 1 (reading "dx") unless told otherwise."""
+    """The diagrams of one load path.
+
+    Args:
+        states: of the path; those that are not whole are passed over.
+        length: L [m].
+        placement: of the spring; default: as the paper's Table 1 has it (reading "dx").
+
+    Raises:
+        FlexureError: where the inversion is singular along the whole path.
+    """
     states = states.whole()
     b = (placement or planar_placement(states, length)).b
     stiffness, _ = invert(states, length, b)

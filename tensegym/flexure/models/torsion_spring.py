@@ -42,13 +42,29 @@ class TorsionSpring:
 
 
 def fit_torsion(states: States, length: float) -> TorsionSpring:
-    """lambda by F1, then the stiffness by least squares on the moment about the pin."""
+    """lambda by F1, then the stiffness by least squares on the moment about the pin.
+
+    Args:
+        states: a sweep of 3 or more.
+        length: L [m].
+
+    Raises:
+        FlexureError: for too few states, or a stiffness that is not positive.
+    """
     fraction = torsion_lambda(states, length)
     return TorsionSpring(length, fraction, stiffness_about(states, length * (1 - fraction)))
 
 
 def stiffness_about(states: States, place: float) -> float:
-    """Stiffness [N m/rad] by least squares on the moment about a pin at (``place``, 0) [m]."""
+    """Stiffness of a pin by least squares on the moment about it.
+
+    Args:
+        states: those that are not whole are passed over.
+        place: of the pin on the hinge's axis [m], from the base.
+
+    Returns:
+        [N m/rad].
+    """
     whole = states.whole()
     if len(whole) < 2:
         raise FlexureError(f"{len(whole)} states with tip, force and moment; the torsion spring needs 2 or more")
