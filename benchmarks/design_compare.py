@@ -19,9 +19,9 @@ import tyro
 from optuna._hypervolume import compute_hypervolume
 
 from tensegym.cli.design import open_search
+from tensegym.processes import Pool
 from tensegym.report import table
 from tensegym.search.confirm import TIME_STEP, over_starts, pick
-from tensegym.search.engine import JoblibEngine
 from tensegym.search.problem import Problem
 from tensegym.search.store import Finished
 from tensegym.search.winner import losses_of, pareto
@@ -67,7 +67,7 @@ class Compare:
         return table(["sampler", "seeds", "trials", f"{what}, median", "least", "most"], lines)
 
     def _confirmed(self, problem: Problem, finished: Finished) -> float:
-        with JoblibEngine(self.jobs) as engine:
+        with Pool(self.jobs) as engine:
             best = pick(problem, finished, engine, max(2, self.episodes // 2), skip=self.episodes)
             rows = over_starts(problem, {(best, TIME_STEP): problem.space.apply(finished[best][0])}, self.episodes,
                                0, engine)  # fmt: skip

@@ -27,9 +27,9 @@ from tqdm import tqdm
 from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import as_design, design_to_dict
 from tensegym.design.variation import variation
+from tensegym.processes import Pool
 from tensegym.report import table
 from tensegym.search.confirm import FIRST_SEED, TIME_STEP
-from tensegym.search.engine import JoblibEngine
 from tensegym.search.evaluate import Trial, try_all
 from tensegym.search.loop import run_search
 from tensegym.search.problem import Problem, load_problem, problem_from
@@ -61,7 +61,7 @@ class Ranking:
     def run(self) -> str:
         designs = drawn(self.config, self.designs)
         scores = _Scores(self.out / "scores.json")
-        with JoblibEngine(self.jobs) as engine:
+        with Pool(self.jobs) as engine:
             for i in tqdm(range(len(designs)), desc="searches", unit="design", file=sys.stderr):
                 if f"search {i}" not in scores.kept:
                     scores.add(f"search {i}", self._searched(designs[i], self.out / f"design-{i:02d}", engine))
@@ -76,7 +76,7 @@ class Ranking:
         _draw(ours, theirs, self.out / "ranking.png")
         return _told(designs, ours, theirs, scores.kept, self.policy)
 
-    def _searched(self, design: RobotDesign, folder: Path, engine: JoblibEngine) -> dict[str, float]:
+    def _searched(self, design: RobotDesign, folder: Path, engine: Pool) -> dict[str, float]:
         """Score of the best controller that a search finds."""
         begun = time.perf_counter()
         folder.mkdir(parents=True, exist_ok=True)
@@ -89,7 +89,7 @@ class Ranking:
         found = self._score(design, problem.space.apply(best[0])["controller"], engine)
         return found | {"searched": best[1].metrics["speed_lps"], "seconds": seconds}
 
-    def _score(self, design: RobotDesign, controller: dict[str, Any], engine: JoblibEngine) -> dict[str, float]:
+    def _score(self, design: RobotDesign, controller: dict[str, Any], engine: Pool) -> dict[str, float]:
         """Mean speed [L/s] over new starts, its standard error, and the seconds it took."""
         begun = time.perf_counter()
         task = load_problem(self.task).task

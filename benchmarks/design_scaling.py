@@ -3,7 +3,7 @@
     python benchmarks/design_scaling.py --seconds 1 --workers 1 4 16 64
     python benchmarks/design_scaling.py --real --workers 1 2      # evaluations of the task, in processes
 
-Sleeping trials run as threads of one joblib pool: they need no core, so one machine stands for a cluster of any size.
+Sleeping trials run as threads: they need no core, so one machine stands for a cluster of any size.
 Prints, for each number of workers, trials a second against the ideal, and the processor time that storing a trial, and
 asking and telling, take.
 """
@@ -12,18 +12,20 @@ from __future__ import annotations
 
 import tempfile
 import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
-import joblib
 import tyro
 from timing import in_turn, row
 
+from tensegym.processes import Pool
 from tensegym.report import table
 from tensegym.search.asker import Asker
-from tensegym.search.engine import JoblibEngine
 from tensegym.search.evaluate import Outcome, Trial, run_trial
 from tensegym.search.loop import run_search
 from tensegym.search.problem import load_problem
@@ -55,13 +57,13 @@ class Scaling:
         for workers in self.workers:
             problem = load_problem(self.task).with_settings(batch=max(64, workers))
             budget = 1 + (self.generations if workers >= 16 else 1) * problem.settings.batch
-            with tempfile.TemporaryDirectory() as folder, joblib.parallel_config(backend="threading"):
+            with tempfile.TemporaryDirectory() as folder, Threads(workers) as pool:
                 store = Timed(Path(folder), problem)
                 begun = time.perf_counter()
-                run_search(problem, store, JoblibEngine(workers), 1, evaluate=self._sleep)
+                run_search(problem, store, pool, 1, evaluate=self._sleep)
                 start = time.perf_counter() - begun
                 begun = time.perf_counter()
-                run_search(problem, store, JoblibEngine(workers), budget, evaluate=self._sleep)
+                run_search(problem, store, pool, budget, evaluate=self._sleep)
                 wall = time.perf_counter() - begun
                 added = store.spent / budget
             asked = _ask_and_tell(self.task, problem.settings.batch)
@@ -78,7 +80,7 @@ class Scaling:
         with ExitStack() as stack:
             contestants = {}
             for workers in self.workers:
-                pool = stack.enter_context(JoblibEngine(workers))
+                pool = stack.enter_context(Pool(workers))
                 list(pool.map(run_trial, trials[: 3 * workers]))  # imports, kernels, the policy
                 contestants[str(workers)] = partial(_rate, pool, trials)
             seen = in_turn(contestants, self.rounds)
@@ -92,10 +94,18 @@ class Scaling:
         return _told(trial.number)
 
 
-def _rate(pool: JoblibEngine, trials: list[Trial]) -> float:
+def _rate(pool: Pool, trials: list[Trial]) -> float:
     begun = time.perf_counter()
     list(pool.map(run_trial, trials))
     return len(trials) / (time.perf_counter() - begun)
+
+
+class Threads(ThreadPoolExecutor):
+    """An engine whose workers wait side by side."""
+
+    def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:  # type: ignore[override]
+        for done in as_completed([self.submit(function, item) for item in items]):
+            yield done.result()
 
 
 class Timed(Store):

@@ -19,10 +19,10 @@ from tensegym.cli.design import open_search
 from tensegym.control.tipping import current_face
 from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import design_from_dict
+from tensegym.processes import Pool
 from tensegym.report import table
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.search.confirm import FIRST_SEED, TIME_STEP, pick
-from tensegym.search.engine import JoblibEngine
 from tensegym.search.evaluate import Trial, start_of, try_all
 from tensegym.search.task import Task
 
@@ -39,7 +39,7 @@ class Steps:
     def run(self) -> str:
         problem, store = open_search(self.folder)
         finished = store.finished()
-        best = pick(problem, finished, JoblibEngine(1), max(2, self.episodes // 2), skip=self.episodes)  # the report's
+        best = pick(problem, finished, Pool(1), max(2, self.episodes // 2), skip=self.episodes)  # the report's
         task = replace(problem.task, dt=TIME_STEP, patience=problem.task.seconds)
         seeds = tuple(FIRST_SEED + i for i in range(self.episodes))
         rows = []

@@ -15,7 +15,7 @@ from tensegym.search.engine import check_engine, engine
 from tensegym.search.evaluate import Outcome
 from tensegym.search.loop import run_search
 from tensegym.search.problem import Problem, load_problem, problem_from
-from tensegym.search.store import Finished, Store
+from tensegym.search.store import Finished, Store, masked
 from tensegym.search.winner import best_number
 
 COMMANDS: dict[str, tuple[str, str]] = {
@@ -30,8 +30,8 @@ COMMANDS: dict[str, tuple[str, str]] = {
 class _Search:
     jobs: int = 1
     """Processes, or workers of a Ray cluster started here."""
-    engine: str = "joblib"
-    """Where trials run: joblib, ray."""
+    engine: str = "local"
+    """Where trials run: local (processes of this machine), ray."""
     address: str | None = None
     """Address of a running Ray cluster."""
     storage: str | None = None
@@ -94,7 +94,7 @@ class Run(_Search):
             if made:
                 self.out.rmdir()
             raise
-        (self.out / "storage.txt").write_text(self.storage or "")
+        (self.out / "storage.txt").write_text(masked(self.storage or ""))
         return self._go(problem, store, self.budget, self.out)
 
 
@@ -132,7 +132,10 @@ def open_search(folder: Path, storage: str | None = None) -> tuple[Problem, Stor
     note = folder / "storage.txt"
     if not note.is_file():
         raise FileNotFoundError(f"no search in {folder}; start one with `tensegym design run --out {folder}`")
-    store = Store(folder, None, storage or note.read_text() or None)
+    kept = note.read_text()
+    if storage is None and "***" in kept:
+        raise InputError(f"the search in {folder} is kept at {kept}, and passwords are not: give --storage URL again")
+    store = Store(folder, None, storage or kept or None)
     return problem_from(store.problem_text, str(folder)), store
 
 

@@ -30,8 +30,8 @@ class DesignReport:
     """Folders of other searches to compare with, such as a random one."""
     jobs: int = 1
     """Processes."""
-    engine: str = "joblib"
-    """Where episodes run: joblib, ray."""
+    engine: str = "local"
+    """Where episodes run: local (processes of this machine), ray."""
     address: str | None = None
     """Address of a running Ray cluster."""
     storage: str | None = None

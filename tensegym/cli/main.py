@@ -27,7 +27,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "bench": ("tensegym.cli.bench:Bench", "measured ratios: substep, environment, start-up, beside their peers"),
     "flexure": ("tensegym.cli.flexure:COMMANDS", "flexible joints: table, curves, fit, track, solve"),
 }
-EXTRAS = {"optuna": "search", "joblib": "search", "cmaes": "search", "sqlalchemy": "search", "ray": "cluster"}
+EXTRAS = {"optuna": "search", "cmaes": "search", "sqlalchemy": "search", "ray": "cluster"}
 
 
 def usage(commands: dict[str, tuple[str, str]], program: str) -> str:

@@ -2,68 +2,37 @@
 
 from __future__ import annotations
 
-import importlib
+import importlib.util
+import os
 import re
+import secrets
 import socket
-import warnings
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from typing import Any, Protocol
 
-from tensegym.errors import InputError, SimulationError
-
-RETRIES = 3  # of a trial whose worker died
+from tensegym.errors import InputError
+from tensegym.processes import RETRIES, Pool
 
 
 class Engine(AbstractContextManager["Engine"], Protocol):
-    """``map`` yields ``function(item).number``-ed results in any order, each item once, retrying lost workers."""
+    """``map`` yields each item's result once, in any order; an item whose worker was lost is tried again."""
 
     def map(self, function: Callable[[Any], Any], items: Sequence[Any]) -> Iterator[Any]: ...
 
 
-class JoblibEngine:
-    """Processes on this machine; ``jobs`` of them, or none but this one for 1."""
-
-    def __init__(self, jobs: int) -> None:
-        self.jobs = jobs
-
-    def __enter__(self) -> JoblibEngine:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self.jobs > 1:
-            from joblib.externals.loky import get_reusable_executor
-
-            get_reusable_executor().shutdown(wait=True)
-
-    def map(self, function: Callable[[Any], Any], items: Sequence[Any]) -> Iterator[Any]:
-        from joblib import Parallel, delayed
-        from joblib.externals.loky.process_executor import TerminatedWorkerError
-
-        left = list(items)
-        for _ in range(1 + RETRIES):
-            done: set[int] = set()
-            try:
-                with warnings.catch_warnings():
-                    warnings.simplefilter("ignore", UserWarning)  # of workers that start anew after one died
-                    parallel = Parallel(n_jobs=self.jobs, return_as="generator_unordered", pre_dispatch="all")
-                    for result in parallel(delayed(function)(item) for item in left):
-                        done.add(result.number)
-                        yield result
-                return
-            except TerminatedWorkerError:
-                left = [item for item in left if item.number not in done]
-        raise SimulationError(f"trial {left[0].number}: its worker died {1 + RETRIES} times")
-
-
 class RayEngine:
-    """A Ray cluster at ``address``, or one started here with ``jobs`` workers."""
+    """A Ray cluster at ``address``, or one started here with ``jobs`` workers, for this machine and user alone."""
 
     def __init__(self, jobs: int, address: str | None) -> None:
+        options: dict[str, Any] = {"address": address}
+        if not address:
+            options = {"num_cpus": jobs, "include_dashboard": False}
+            _keep_to_this_machine()
         import ray
 
         self._ray = ray
-        options: dict[str, Any] = {"address": address} if address else {"num_cpus": jobs, "include_dashboard": False}
         try:
             ray.init(logging_level="error", log_to_driver=False, ignore_reinit_error=True, **options)
         except (ConnectionError, RuntimeError, ValueError) as error:
@@ -83,14 +52,29 @@ class RayEngine:
             yield from self._ray.get(ready)
 
 
+def _keep_to_this_machine() -> None:
+    """Let a Ray started here listen on loopback alone, and answer those only who know a token.
+
+    Ray reads this when it is imported, so it is set before. Raises InputError where Ray was imported without.
+    """
+    if "RAY_AUTH_MODE" in os.environ:  # set here before, or by a user who knows Ray
+        return
+    if "ray" in sys.modules and not sys.modules["ray"].is_initialized():
+        raise InputError("ray was imported before its engine was made, and would listen on the network: "
+                         "make the engine first, or set RAY_AUTH_MODE before the import")  # fmt: skip
+    os.environ |= {"RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0", "RAY_AUTH_MODE": "token",
+                   "RAY_AUTH_TOKEN": secrets.token_hex(32)}  # fmt: skip
+
+
 def check_engine(name: str, address: str | None = None) -> None:
     """Raises InputError for an engine there is not, or an address of host and port at which nothing listens.
 
     Raises ModuleNotFoundError where the engine's library is missing. Ray itself takes minutes to give an address up.
     """
-    if name not in ("joblib", "ray"):
-        raise InputError(f"engine = {name!r} is not one of joblib, ray")
-    importlib.import_module(name)
+    if name not in ("local", "joblib", "ray"):
+        raise InputError(f"engine = {name!r} is not one of local, ray")
+    if name == "ray" and importlib.util.find_spec(name) is None:
+        raise ModuleNotFoundError("No module named 'ray'", name=name)
     place = re.fullmatch(r"(?:ray://)?([^:/]+):(\d{1,5})", address or "")
     if not place:
         return
@@ -101,6 +85,9 @@ def check_engine(name: str, address: str | None = None) -> None:
 
 
 def engine(name: str, jobs: int, address: str | None = None) -> Engine:
-    """By name: joblib or ray. Raises as `check_engine`, or InputError where no cluster answers."""
+    """By name: ray, or local (joblib, as it was called once) for processes of this machine.
+
+    Raises as `check_engine`, or InputError where no cluster answers.
+    """
     check_engine(name, address)
-    return RayEngine(jobs, address) if name == "ray" else JoblibEngine(jobs)
+    return RayEngine(jobs, address) if name == "ray" else Pool(jobs)

@@ -37,6 +37,9 @@ class Trial:
     seeds: tuple[int, ...]
     bar: float = math.inf
 
+    def __str__(self) -> str:
+        return f"trial {self.number}"
+
 
 @dataclass(frozen=True)
 class Outcome:

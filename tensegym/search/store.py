@@ -5,6 +5,7 @@ A trial is written in one transaction when it is finished, never before, so a ki
 
 from __future__ import annotations
 
+import re
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,11 @@ from .problem import Problem
 from .space import Value
 
 Finished = dict[int, tuple[dict[str, Value], Outcome]]  # number of a trial: its values and outcome
+
+
+def masked(url: str) -> str:
+    """A database URL as it may be shown and kept: with *** for its password."""
+    return re.sub(r"((?:^|[?&])[^=&?]*password=)[^&]*", r"\1***", re.sub(r"(://[^/?#]*?:).*@", r"\1***@", url))
 
 
 class Store:
@@ -48,9 +54,10 @@ class Store:
                     directions=[o.direction for o in problem.settings.objectives],
                 )  # fmt: skip
         except KeyError as error:
-            raise InputError(f"{url} holds no study {name!r}; start one with `tensegym design run`") from error
+            raise InputError(f"{masked(url)} holds no study {name!r}; start one with `tensegym design run`") from error
         except (SQLAlchemyError, ImportError, optuna.exceptions.OptunaError) as error:
-            raise InputError(f"storage {url!r} does not answer: {str(error).splitlines()[0]}") from error
+            reason = str(error).splitlines()[0].replace(url, masked(url))
+            raise InputError(f"storage {masked(url)!r} does not answer: {reason}") from None
         known = self._study.user_attrs.get("problem")
         if problem is not None and known is None:
             self._study.set_user_attr("problem", problem.text)

@@ -78,7 +78,7 @@ def test_a_storage_that_does_not_answer_is_refused(cli, tiny_file, tmp_path, url
         (["run", "--task", "nowhere.toml"], ["no task file nowhere.toml", "carry"]),
         (["run", "--budget", "0"], ["budget = 0"]),
         (["run", "--jobs", "0"], ["jobs = 0"]),
-        (["run", "--engine", "magic"], ["engine = 'magic'", "joblib, ray"]),
+        (["run", "--engine", "magic"], ["engine = 'magic'", "local, ray"]),
         (["run", "--address", "127.0.0.1:1"], ["no Ray cluster answers", "127.0.0.1:1"]),
         (["status", "--folder", "nothing"], ["no search in nothing"]),
         (["resume", "--folder", "nothing"], ["no search in nothing"]),

@@ -3,11 +3,11 @@ import pytest
 from workers import killed_once, quick
 
 from tensegym.errors import InputError
-from tensegym.search.engine import JoblibEngine
+from tensegym.processes import Pool
 from tensegym.search.loop import run_search
 from tensegym.search.store import Store
 
-ONE = JoblibEngine(1)
+ONE = Pool(1)
 
 
 class Killed(Exception):
@@ -82,7 +82,7 @@ def test_cmaes_finds_the_top_of_a_hill_that_random_search_does_not(tiny, store):
 def test_two_processes_find_what_one_finds(tiny, store):
     problem = tiny()
     run_search(problem, one := store("one", problem), ONE, 5)
-    with JoblibEngine(2) as engine:
+    with Pool(2) as engine:
         run_search(problem, two := store("two", problem), engine, 5)
     assert values_of(one) == values_of(two)
 
@@ -91,7 +91,7 @@ def test_a_trial_whose_worker_was_killed_is_run_again(tiny, store, tmp_path):
     problem = tiny()
     space = problem.space
     space.tables["controller"]["policy"] = str(tmp_path / "killed")
-    with JoblibEngine(2) as engine:
+    with Pool(2) as engine:
         run_search(problem, kept := store("kept", problem), engine, 4, evaluate=killed_once)
     assert (tmp_path / "killed").exists()
     assert sorted(kept.finished()) == [0, 1, 2, 3]
