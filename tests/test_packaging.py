@@ -76,17 +76,6 @@ def test_the_bare_folder_refuses_to_be_imported(name):
     assert f"import tensegym.{name}, not {name}" in done.stderr
 
 
-def test_only_one_package_imports_pybullet():
-    importing = {
-        path.relative_to(ROOT).as_posix()
-        for top in ("tensegym", *LINKED)
-        for path in (ROOT / top).rglob("*.py")
-        if re.search(r"^\s*(from\s+pybullet|(from\s+\S+\s+)?import\s+pybullet)\b", path.read_text(), re.MULTILINE)
-    }
-    assert {name for name in importing if not name.startswith("tensegym/bullet/")} == set()
-    assert "tensegym/bullet/engine.py" in importing
-
-
 def test_every_pybullet_call_names_its_client():
     source = "\n".join(path.read_text() for path in (ROOT / "tensegym" / "bullet").glob("*.py"))
     calls = re.findall(r"pybullet\.([a-z]\w*)\(((?:[^()]|\([^()]*(?:\([^()]*\)[^()]*)*\))*)\)", source)
@@ -95,19 +84,13 @@ def test_every_pybullet_call_names_its_client():
     assert nameless == []
 
 
-def test_importing_brings_no_learning_and_no_plotting():
-    heavy = ("torch", "stable_baselines3", "matplotlib", "moviepy", "tensorboard", "tqdm", "yaml")
-    code = f"import sys, tensegym, tensegym.cli.main, gymnasium; print([m for m in {heavy} if m in sys.modules])"
-    assert python(code).stdout.splitlines()[0] == "[]"
-
-
 @pytest.mark.parametrize("command", ["simulate", "validate", "step"])
 def test_commands_without_learning_load_none(command):
     from tensegym.cli.main import COMMANDS
 
     module = COMMANDS[command][0].split(":")[0]
     code = f"import sys, {module}; print([m for m in ('torch', 'stable_baselines3', 'matplotlib') if m in sys.modules])"
-    assert python(code).stdout.splitlines()[0] == "[]"
+    assert python(code).stdout.splitlines() == ["[]"]
 
 
 def test_version_is_pyprojects():
@@ -128,7 +111,6 @@ def test_constraints_pin_every_requirement():
     project = PROJECT["project"]
     wanted = [*project["dependencies"], *(r for extra in project["optional-dependencies"].values() for r in extra)]
     assert {_name(r) for r in wanted} - set(pins) == set()
-    assert pins["torch"] == "2.13.0"
     from packaging.requirements import Requirement
 
     for requirement in map(Requirement, wanted):
@@ -141,23 +123,6 @@ def test_what_runs_here_is_what_the_constraints_pin():
     off = {name: (installed[name], pins[name]) for name in installed.keys() & pins if installed[name] != pins[name]}
     assert off == {}
     assert len(installed.keys() & pins) > 30
-
-
-def test_core_and_extras_are_those_of_the_plan():
-    project = PROJECT["project"]
-    core = {_name(r) for r in project["dependencies"]}
-    assert core >= {"pybullet", "numpy", "scipy", "gymnasium", "numba", "tyro"}
-    assert not core & {"torch", "stable-baselines3", "matplotlib"}
-    train = {_name(r) for r in project["optional-dependencies"]["train"]}
-    assert train >= {"stable-baselines3", "torch", "tensorboard", "tqdm", "rich", "matplotlib", "moviepy"}
-    dev = {_name(r) for r in project["optional-dependencies"]["dev"]}
-    assert dev >= {"pytest", "hypothesis", "ruff", "mypy"}
-    assert project["scripts"] == {"tensegym": "tensegym.cli.main:main"}
-
-
-def test_the_licence_is_mits_and_is_there():
-    assert PROJECT["project"]["license"] == "MIT"
-    assert (ROOT / "LICENSE").read_text().startswith("MIT License")
 
 
 def test_files_name_no_place_on_a_machine():

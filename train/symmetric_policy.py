@@ -13,8 +13,8 @@ import torch
 from stable_baselines3.common.policies import ActorCriticPolicy
 from torch import nn
 
+from tensegym.design.symmetry import symmetries
 from tensegym.envs.rolling import RollingEnv
-from tensegym.structure.symmetry import symmetries
 
 
 def symmetry_arguments(env: RollingEnv) -> dict[str, list[list[int]]]:

@@ -9,18 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from tensegym.control.tipping import Pull, Tip, run_pull, subsets, tip_from, tip_table
+from tensegym.control.tipping import Pull, Tip, subsets, tip_from, tip_table
 from tensegym.control.walker import save_table
 from tensegym.design.design_file import as_design
 from tensegym.errors import InputError, SimulationError
-from tensegym.physics import drives as drive_kernel
+from tensegym.plotting import require_matplotlib
 from tensegym.report import Report, table
-from tensegym.robot.rendering import render
 from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityRobot
 from tensegym.structure.faces import face_by_nodes
 
-FRAMES = 6
-PERIOD = 0.02  # s between two rows of the record
+from .figures import PERIOD, draw_drives, draw_storyboard, record_step
 
 
 @dataclass(frozen=True)
@@ -56,7 +54,7 @@ class Step:
             raise InputError(f"dt = {self.dt!r} must be in [{low:g}, {high:g}] s and divide {PERIOD} s")
         if self.out.exists() and not self.out.is_dir():
             raise InputError(f"--out {self.out} is a file; give a folder")
-        import matplotlib  # noqa: F401  # missing, it fails here, before anything is written
+        require_matplotlib()
         with TensegrityRobot(design, dt=self.dt) as robot:
             count = len(robot.drives)
             if not all(1 <= d <= count for d in self.drives) or len(set(self.drives)) < len(self.drives):
@@ -66,9 +64,9 @@ class Step:
                 return self._table(robot)
             tip = self._find(robot, faces)
             self.out.mkdir(parents=True, exist_ok=True)
-            record = _record(robot, tip)
-        _draw_storyboard(record, self.out / "storyboard.png")
-        _draw_drives(record, self.out / "drives.png")
+            record = record_step(robot, tip)
+        draw_storyboard(record, self.out / "storyboard.png")
+        draw_drives(record, self.out / "drives.png")
         names = robot.faces.names()
         pulled = ", ".join(str(d + 1) for d in tip.pull.drives)
         travel = float(np.hypot(*tip.travel))
@@ -115,74 +113,3 @@ class Step:
         text = table(["face", "kind", "pulls that tip", "onto"], rows) + f"\n{total} of {len(tips)} pulls tip the robot"
         return Report(text, {"out": str(self.out / "tips.json"), "pulls": len(tips), "tipped": total,
                              "peak_tension_N": max(t.peak_tension for t in tips)})  # fmt: skip
-
-
-@dataclass
-class _Record:
-    times: list[float]
-    frames: list[tuple[float, np.ndarray]]  # time [s], picture
-    drives: list[np.ndarray]
-    tensions: list[np.ndarray]
-    ratio: float
-
-
-def _record(robot: TensegrityRobot, tip: Tip, settle: float = 0.5) -> _Record:
-    """Run the step again with the camera on: the same start gives the same motion."""
-    record = _Record([], [], [], [], robot.design.drive.gear_ratio)
-    robot.reset(tip.from_face)
-    robot.step(round(settle / robot.dt))
-    start = robot.time
-    wanted = np.linspace(0, tip.pull.duration - PERIOD, FRAMES)
-    driven = slice(robot.cables.first_driven, robot.cables.first_driven + len(robot.drives))
-
-    def watch(robot: TensegrityRobot) -> None:
-        now = robot.time - start
-        record.times.append(now)
-        record.drives.append(robot.drives.copy())
-        record.tensions.append(robot.tensions[driven].copy())
-        if len(record.frames) < FRAMES and now >= wanted[len(record.frames)]:
-            record.frames.append((now, render(robot)))
-
-    run_pull(robot, tip.pull, watch, PERIOD)
-    return record
-
-
-def _draw_storyboard(record: _Record, out: Path) -> None:
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(2, 3, figsize=(12, 6.4))
-    for axis, (time, frame) in zip(axes.flat, record.frames, strict=True):
-        axis.imshow(frame)
-        axis.set_title(f"t = {time:.2f} s")
-        axis.axis("off")
-    figure.tight_layout()
-    figure.savefig(out, dpi=110)
-    plt.close(figure)
-
-
-def _draw_drives(record: _Record, out: Path) -> None:
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    times, state = np.array(record.times), np.array(record.drives)
-    figure, (angle, torque, tension) = plt.subplots(3, 1, sharex=True, figsize=(9, 9))
-    for d in range(state.shape[1]):
-        colour = f"C{d}"
-        angle.plot(times, state[:, d, drive_kernel.COMMAND], "--", color=colour, lw=0.8)
-        angle.plot(times, state[:, d, drive_kernel.ROTOR_ANGLE] / record.ratio, color=colour, label=f"drive {d + 1}")
-        torque.plot(times, 1e3 * state[:, d, drive_kernel.LOAD_TORQUE], color=colour)
-        tension.plot(times, np.array(record.tensions)[:, d], color=colour)
-    angle.set(ylabel="spool angle [rad]", title="Dashed: commanded; full: true")
-    angle.legend(ncols=3)
-    torque.set(ylabel="load torque at the spool [mN m]")
-    tension.set(ylabel="tension of the stiff cable [N]", xlabel="time [s]")
-    for axis in (angle, torque, tension):
-        axis.grid(alpha=0.3)
-    figure.tight_layout()
-    figure.savefig(out, dpi=110)
-    plt.close(figure)

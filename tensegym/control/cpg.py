@@ -29,9 +29,9 @@ import tomli_w
 from tensegym.arrays import FloatArray, IntArray
 from tensegym.design.design import RobotDesign
 from tensegym.design.parameters import bounded, check_ranges
+from tensegym.design.symmetry import symmetries
 from tensegym.errors import DesignError
 from tensegym.robot.robot import TensegrityRobot
-from tensegym.structure.symmetry import symmetries
 
 _PAIRS = np.triu_indices(6)
 TERMS = 6 + len(_PAIRS[0]) + 1  # linear, quadratic and constant terms of a drive's feedback

@@ -7,11 +7,11 @@ import pytest
 import tensegym.search.evaluate as module
 from tensegym.control.cpg import Cpg, CpgController, drive_kinds, fitted_feedback
 from tensegym.design.design import RobotDesign
+from tensegym.design.symmetry import symmetries
 from tensegym.errors import DesignError
 from tensegym.robot.gait import GaitMeter
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.search.evaluate import Trial, evaluate, run_trial, try_all
-from tensegym.structure.symmetry import symmetries
 
 
 @pytest.fixture

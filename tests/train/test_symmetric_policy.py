@@ -6,9 +6,9 @@ import torch
 from scipy.spatial.transform import Rotation
 
 from tensegym.design.design import Payload, RobotDesign
+from tensegym.design.symmetry import symmetries
 from tensegym.envs.rolling import RollingEnv
 from tensegym.robot.robot import TensegrityRobot
-from tensegym.structure.symmetry import symmetries
 from tensegym.train.symmetric_policy import SymmetricPolicy, symmetry_arguments
 
 GROUP = symmetries(RobotDesign())

@@ -9,7 +9,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray, IntArray
-from tensegym.design.design import RobotDesign
+
+from .design import RobotDesign
 
 
 @dataclass(frozen=True)
