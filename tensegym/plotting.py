@@ -13,8 +13,8 @@ def require_matplotlib() -> None:
 
 
 def new_figure(
-    rows: int = 1, columns: int = 1, *, size: tuple[float, float], layout: Literal["constrained", "tight"] = "constrained",
-    **options: Any,
+    rows: int = 1, columns: int = 1, *, size: tuple[float, float],
+    layout: Literal["constrained", "tight"] = "constrained", **options: Any,
 ) -> tuple[Any, Any]:  # fmt: skip
     """A figure and its axes: one, (n,) or (rows, columns) of them, as ``Figure.subplots`` squeezes.
 

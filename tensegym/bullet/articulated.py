@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from tensegym.arrays import FloatArray
+from tensegym.errors import SimulationError
 
 from .bodies import FIXED, joint_kind, load_body
-from .engine import pybullet
+from .engine import captured, pybullet
 from .world import World
 
 
@@ -18,11 +20,20 @@ class Articulated:
 
     Rows of per-link arrays are the base, then the links in the engine's order; columns of per-joint arrays are the
     joints that move, in that order. Revolute and prismatic joints only.
+
+    Raises SimulationError, with what the engine says, for a file that it cannot load.
     """
 
     def __init__(self, world: World, urdf: Path, pose: Sequence[float], friction: float, fixed_base: bool) -> None:
         self.world, self.client = world, world.client
-        self.body = body = load_body(self.client, urdf, pose, friction, fixed_base)
+        body = None
+        with captured() as said, suppress(SimulationError):
+            body = load_body(self.client, urdf, pose, friction, fixed_base)
+        self.said = "".join(said)
+        """What the engine had to say about the file, in one line."""
+        if body is None:
+            raise SimulationError(f"PyBullet cannot load {urdf.name}: {self.said or 'it says not why'}")
+        self.body = body
         joints = range(pybullet.getNumJoints(body, physicsClientId=self.client))
         self.joint_info = [pybullet.getJointInfo(body, i, physicsClientId=self.client) for i in joints]
         self.kinds = [joint_kind(self.client, body, i) for i in joints]

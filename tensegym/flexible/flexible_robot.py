@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -63,7 +64,9 @@ class FlexibleRobot:
             raise FlexureError(f"dt = {dt!r} s; give a time step above 0")
         if scheme not in SCHEMES:
             raise FlexureError(f"scheme = {scheme!r}; one of {', '.join(SCHEMES)}")
-        self.urdf = FlexibleUrdf(urdf)
+        self.urdf = FlexibleUrdf(urdf, fixed_base)
+        for note in self.urdf.notes:
+            warnings.warn(f"{self.urdf.path.name}: {note}", UserWarning, stacklevel=2)
         self.dt, self.scheme, self.fixed_base, self.friction = dt, scheme, fixed_base, friction
         self.gravity, self.base_pose = _finite("gravity", gravity, 3), _finite("pose", pose, 7)
         self.flexures: dict[str, FlexureJoint] = {}
@@ -94,7 +97,9 @@ class FlexibleRobot:
         self._load()
 
     def _load(self) -> None:
-        self.body: Articulated = self.urdf.load(self.world, self.friction, self.fixed_base)
+        self.body: Articulated = self.urdf.load(self.world, self.friction)
+        if self.body.said:
+            warnings.warn(f"{self.urdf.path.name}: PyBullet says: {self.body.said}", UserWarning, stacklevel=3)
         self.joints = {self.body.joint_info[i][1].decode(): column for column, i in enumerate(self.body.moving)}
         self.links = self.urdf.link_rows(self.body)
         flexures = list(self.flexures.values())

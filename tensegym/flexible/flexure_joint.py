@@ -107,6 +107,8 @@ class FlexureJoint:
         along = self._along
         if along is None:
             along = np.array([0.0, 1.0, 0.0] if abs(axis[0]) > 0.9 else [1.0, 0.0, 0.0])
+            if abs(along @ axis) > 0:
+                along = along - (along @ axis) * axis
         if along.shape != (3,) or not abs(along @ axis) < 1e-6 * np.linalg.norm(along):
             raise FlexureError(f"joint {self.name!r}: along = {along.tolist()} is not across the axis {axis.tolist()}")
         along = along / np.linalg.norm(along)

@@ -59,8 +59,6 @@ def read_tree(body: Articulated, fixed_base: bool) -> Tree:
         turn[i] = (turned[up].inv() * turned[i]).as_matrix()
     columns = {link: column for column, link in enumerate(body.moving)}
     mass = np.array([row[0] for row in inertias], dtype=float)
-    if not fixed_base and not mass[0] > 0:
-        raise ValueError("a floating base needs a mass")
     return Tree(
         parent, np.array([FIXED, *body.kinds], dtype=np.int64),
         np.array([0] + [columns.get(i, 0) for i in range(size - 1)], dtype=np.int64), offset, turn,

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from tensegym.bullet import packaged_urdf
-from tensegym.flexible import Load
-from tensegym.flexible.flexure_file import load_robot
+from tensegym.flexible import Load, load_robot
 
 HIP, GRAVITY = 0.012, 9.81  # kg, m/s^2
 

@@ -12,9 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from tensegym.bullet import packaged_urdf
 from tensegym.errors import FlexureError, SimulationError
-from tensegym.flexible import FlexibleRobot, FlexureJoint, Load
+from tensegym.flexible import FlexibleRobot, FlexureJoint, Load, load_robot
 from tensegym.flexible import spring_kernel as kernel
-from tensegym.flexible.flexure_file import load_robot
 from tensegym.flexible.springs import spring_table
 from tensegym.flexure import fem
 from tensegym.flexure.hinge import PAPER_HINGES, Box, preset
