@@ -9,7 +9,7 @@
 
     flexible_robot.py   FlexibleRobot; flexure_joint.py: FlexureJoint; load.py: Load
     flexure_file.py     load_robot: the TOML file
-    urdf_audit.py       a user's URDF looked through before it is loaded; urdf_meshes.py: its files; urdf_xml.py: its XML
+    urdf_audit.py       a user's URDF looked through before loading; urdf_meshes.py: its files; urdf_xml.py: its XML
     urdf_rewrite.py     a named revolute joint becomes a chain of joints; flexible_urdf.py: FlexibleUrdf, the whole text
     tree.py             links as arrays; tree_kernel.py: their equations of motion
     springs.py          fitted models as arrays; spring_kernel.py: energy, gradient, Hessian, margin
