@@ -40,7 +40,7 @@ train: $(STAMP)
 	$(BIN)/tensegym train --config rolling --seed 0
 
 bench: $(STAMP)
-	$(BIN)/tensegym bench --out benchmarks/results/ratios.json
+	$(BIN)/python benchmarks/ratios.py --out benchmarks/results/ratios.json
 	$(BIN)/python benchmarks/flexure.py
 
 clean:

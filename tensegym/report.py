@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import json
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 
 @dataclass(frozen=True)
@@ -26,3 +30,27 @@ def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     widths = [max(len(row[i]) for row in cells) for i in range(len(header))]
     lines = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in cells]
     return "\n".join([lines[0], "  ".join("-" * w for w in widths), *lines[1:]])
+
+
+def to_json(data: Mapping[str, Any], indent: int | None = None) -> str:
+    """JSON text of a table of facts, NumPy's numbers and arrays in it as plain ones.
+
+    JSON knows no nan and no infinity: they become null, and ``not_finite`` at the end says where they stood and what
+    they were, as in {"gait.cost_of_transport": "inf"}.
+    """
+    lost: dict[str, str] = {}
+    plain = _plain(data, (), lost)
+    return json.dumps(plain | ({"not_finite": lost} if lost else {}), indent=indent, allow_nan=False)
+
+
+def _plain(value: Any, path: tuple[str, ...], lost: dict[str, str]) -> Any:
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        return {str(key): _plain(part, (*path, str(key)), lost) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(part, (*path, str(n)), lost) for n, part in enumerate(value)]
+    if isinstance(value, float) and not math.isfinite(value):
+        lost[".".join(path)] = str(value)
+        return None
+    return value

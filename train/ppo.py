@@ -1,4 +1,4 @@
-"""`tensegym train`: PPO on a rolling environment, checkpointed so that a killed run goes on as if it had not been.
+"""PPO on a rolling environment, checkpointed so that a killed run goes on as if it had not been.
 
 Training is a row of chunks. A chunk starts from its checkpoint alone: weights, optimiser, running statistics, and
 random generators seeded by (seed, steps done), with fresh episodes. So killing and resuming changes nothing.
@@ -6,21 +6,14 @@ random generators seeded by (seed, steps done), with fresh episodes. So killing 
 
 from __future__ import annotations
 
-import csv
-import json
-import platform
-import subprocess
 import sys
 import time
-from dataclasses import dataclass, replace
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, cast
 
 import gymnasium as gym
 import numpy as np
 import torch
-import yaml
 from stable_baselines3 import PPO
 from stable_baselines3.common.logger import configure
 from stable_baselines3.common.utils import set_random_seed
@@ -30,14 +23,13 @@ from tqdm import tqdm
 from tensegym.envs import CONTROL_PERIOD
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
-from tensegym.report import Report, table
 
-from .checkpoint import checkpoint_folder, last_state, write_checkpoint
-from .config import TrainConfig, load_config
-from .start_policy import begin_from, check_start
+from .checkpoint import checkpoint_folder, write_checkpoint
+from .config import TrainConfig
+from .start_policy import begin_from
 from .symmetric_policy import SymmetricPolicy, symmetry_arguments
 from .vec_env import RollingVecEnv
-from .watch import CURVE_FIELDS, Watch
+from .watch import Watch
 
 
 def make_env(config: TrainConfig) -> gym.Env:
@@ -60,82 +52,6 @@ def make_vec_env(config: TrainConfig) -> RollingVecEnv:
     """The config's environments, over the cores."""
     arguments = {**gym.spec(config.env_id).kwargs, **config.env}
     return RollingVecEnv(config.n_envs, _episode_steps(config), arguments)
-
-
-@dataclass(frozen=True)
-class Train:
-    """Train a rolling policy with PPO and save it with its curve."""
-
-    config: str = "rolling"
-    """A committed config (rolling, onboard, flexible, conditioned, carry, climb, steep) or the path of a YAML file."""
-    out: Path | None = None
-    """Folder of the run; default runs/CONFIG-sSEED. One folder a run."""
-    seed: int = 0
-    """Seed of the networks, the episodes and the exploration."""
-    steps: int | None = None
-    """Environment steps in all, in place of the config's; with --resume, a longer schedule to go on with."""
-    resume: bool = False
-    """Go on from the folder's last checkpoint, with its own config and seed."""
-
-    def run(self) -> Report:
-        out = self.out or Path("runs") / f"{Path(self.config).stem}-s{self.seed}"
-        if self.resume:
-            state = last_state(out)
-            config, seed = load_config(str(out / "config.yaml")), state["seed"]
-            if self.steps is not None:
-                config = _extended(config, self.steps, out, state)
-        else:
-            if out.exists() and not out.is_dir():
-                raise InputError(f"--out {out} is a file; give a folder")
-            if out.exists() and any(out.iterdir()):
-                raise InputError(f"folder {out} is not empty; take another --out, or --resume to go on with it")
-            config, seed = load_config(self.config), self.seed
-            data = config.as_dict() | ({} if self.steps is None else {"steps": self.steps})
-            config = TrainConfig(**data)
-            _check(config)
-            state = {"seed": seed, "steps": 0, "seconds": 0.0}
-            out.mkdir(parents=True, exist_ok=True)
-            (out / "config.yaml").write_text(yaml.safe_dump(config.as_dict(), sort_keys=False))
-            (out / "versions.json").write_text(json.dumps(_versions(), indent=1))
-            (out / "state.json").write_text(json.dumps(state))
-            with (out / "curve.csv").open("w", newline="") as file:
-                csv.writer(file).writerow(CURVE_FIELDS)
-        model_steps = train(config, seed, out, state)
-        rows = list(csv.DictReader((out / "curve.csv").open()))
-        best = max((float(r["speed_lps"]) for r in rows), default=None)
-        from .curve import draw_curve
-
-        draw_curve({out.name: out / "curve.csv"}, out / "curve.png")
-        data = {"out": str(out), "seed": seed, "steps": model_steps, "best_median_speed_lps": best,
-                "last": {k: float(v) for k, v in rows[-1].items()} if rows else {}}  # fmt: skip
-        text = table(["run", "steps", "best median speed L/s"], [[str(out), model_steps, best]])
-        return Report(text, data)
-
-
-def _check(config: TrainConfig) -> None:
-    """A bad env argument, or a start that does not fit it, fails here, before anything is written."""
-    probe = make_env(config)
-    spaces = probe.observation_space.shape, probe.action_space.shape
-    probe.close()
-    if config.start is not None:
-        check_start(config, *spaces)
-
-
-def _extended(config: TrainConfig, steps: int, out: Path, state: dict[str, Any]) -> TrainConfig:
-    """The same training with a longer schedule; the run's state keeps the ends of its stages."""
-    if steps <= state["steps"]:
-        raise InputError(f"steps = {steps} must be above the {state['steps']} that {out} stands at")
-    state["stages"] = [*state.get("stages", [config.steps]), steps]
-    config = replace(config, steps=steps)
-    (out / "config.yaml").write_text(yaml.safe_dump(config.as_dict(), sort_keys=False))
-    return config
-
-
-def _versions() -> dict[str, str]:
-    names = ("tensegym", "pybullet", "numpy", "numba", "gymnasium", "stable-baselines3", "torch")
-    found = {"python": platform.python_version(), **{n: version(n) for n in names}}
-    commit = subprocess.run(["git", "-C", Path(__file__).parent, "rev-parse", "HEAD"], capture_output=True, text=True)
-    return found | {"commit": commit.stdout.strip() or "not a git checkout"}
 
 
 def train(config: TrainConfig, seed: int, out: Path, state: dict[str, Any]) -> int:

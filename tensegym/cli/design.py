@@ -18,6 +18,8 @@ from tensegym.search.problem import Problem, load_problem, problem_from
 from tensegym.search.store import Finished, Store, masked
 from tensegym.search.winner import best_number
 
+from .options import Count, Jobs, Seed
+
 COMMANDS: dict[str, tuple[str, str]] = {
     "run": ("tensegym.cli.design:Run", "search for a design that makes a motion"),
     "resume": ("tensegym.cli.design:Resume", "go on with a search that was stopped or killed, or further"),
@@ -28,7 +30,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
 
 @dataclass(frozen=True)
 class _Search:
-    jobs: int = 1
+    jobs: Jobs = 1
     """Processes, or workers of a Ray cluster started here."""
     engine: str = "local"
     """Where trials run: local (processes of this machine), ray."""
@@ -38,8 +40,6 @@ class _Search:
     """Database URL; default: study.db in the folder."""
 
     def _check(self) -> None:
-        if self.jobs < 1:
-            raise InputError(f"jobs = {self.jobs} must be 1 or more")
         check_engine(self.engine, self.address)
 
     def _go(self, problem: Problem, store: Store, budget: int, out: Path) -> Report:
@@ -70,9 +70,9 @@ class Run(_Search):
 
     task: str = "carry"
     """A task file by path, or a shipped one by name."""
-    budget: int = 400
+    budget: Count = 400
     """Trials in all."""
-    seed: int | None = None
+    seed: Seed | None = None
     """Seed of the search in place of the task file's."""
     sampler: str | None = None
     """Sampler in place of the task file's: cmaes, tpe, nsga2, random."""
@@ -81,8 +81,6 @@ class Run(_Search):
 
     def run(self) -> Report:
         self._check()
-        if self.budget < 1:
-            raise InputError(f"budget = {self.budget} must be 1 or more")
         if self.out.exists() and not self.out.is_dir():
             raise InputError(f"--out {self.out} is a file; give a folder")
         problem = load_problem(self.task).with_settings(seed=self.seed, sampler=self.sampler)
@@ -104,7 +102,7 @@ class Resume(_Search):
 
     folder: Path = Path("design")
     """Folder of the search."""
-    budget: int | None = None
+    budget: Count | None = None
     """Trials in all; default: as before."""
 
     def run(self) -> Report:

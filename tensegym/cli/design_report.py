@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 from tensegym.errors import InputError
 from tensegym.report import Report, table
@@ -13,6 +14,7 @@ from tensegym.search.report import write_report
 from tensegym.search.winner import ranked
 
 from .design import open_search
+from .options import MOST, Jobs, Within
 
 _SHOWN = {"speed_lps_median": "median L/s", "speed_lps_mean": "mean L/s", "slip_share_median": "slip share",
           "drive_load_largest": "drive load", "audit_failures": "audit failures"}  # fmt: skip
@@ -24,11 +26,11 @@ class DesignReport:
 
     folder: Path = Path("design")
     """Folder of the search."""
-    episodes: int = 50
+    episodes: Annotated[int, Within(2, MOST)] = 50
     """New starts that start and winner are tried from, at the default time step and at half of it."""
     against: tuple[Path, ...] = ()
     """Folders of other searches to compare with, such as a random one."""
-    jobs: int = 1
+    jobs: Jobs = 1
     """Processes."""
     engine: str = "local"
     """Where episodes run: local (processes of this machine), ray."""
@@ -38,8 +40,6 @@ class DesignReport:
     """Database URL; default: the one it was started with."""
 
     def run(self) -> Report:
-        if self.episodes < 2:
-            raise InputError(f"episodes = {self.episodes} must be 2 or more")
         problem, store = open_search(self.folder, self.storage)
         others = {}
         for folder in self.against:

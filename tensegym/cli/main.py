@@ -7,12 +7,11 @@ command is imported, so `tensegym --help` stays fast and `tensegym simulate` nev
 from __future__ import annotations
 
 import importlib
-import json
 import sys
 from typing import Any
 
 from tensegym.errors import TensegymError
-from tensegym.report import Report
+from tensegym.report import Report, to_json
 
 COMMANDS: dict[str, tuple[str, str]] = {
     # name: ("module:Class" or "module:COMMANDS" for a group, one line of help)
@@ -21,10 +20,9 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "simulate": ("tensegym.cli.simulate:Simulate", "drive-angle commands in, the whole motion out, as CSV"),
     "modes": ("tensegym.cli.modes:Modes", "free modes of a design, and the loads of its rods"),
     "validate": ("tensegym.cli.validate:Validate", "physics against closed forms: expected, measured, tolerance"),
-    "train": ("tensegym.train.ppo:Train", "train a rolling policy with PPO; resumable"),
+    "train": ("tensegym.cli.train:Train", "train a rolling policy with PPO; resumable"),
     "evaluate": ("tensegym.train.evaluate:Evaluate", "judge a policy and the baselines over many seeds"),
     "design": ("tensegym.cli.design:COMMANDS", "search for a design that makes a motion: run, resume, status"),
-    "bench": ("tensegym.cli.bench:Bench", "measured ratios: substep, environment, start-up, beside their peers"),
     "flexure": ("tensegym.cli.flexure:COMMANDS", "flexible joints: table, curves, fit, track, solve"),
 }
 EXTRAS = {"optuna": "search", "cmaes": "search", "sqlalchemy": "search", "ray": "cluster"}
@@ -63,22 +61,26 @@ def run(argv: list[str], commands: dict[str, tuple[str, str]] = COMMANDS, progra
 
         import tyro
 
+        from .options import check_ranges
+
         as_json = "--json" in rest
         command = tyro.cli(target, args=[a for a in rest if a != "--json"], prog=f"{program} {name} [--json]",
                            config=(tyro.conf.OmitArgPrefixes,))
+        check_ranges(command)
         report: Report = command.run()
     except ModuleNotFoundError as error:
         if str(error.name).startswith("tensegym"):
             raise
-        extra = EXTRAS.get(str(error.name), "train")
-        print(f"{program} {name}: error: {error.name} is not installed; install tensegym[{extra}]", file=sys.stderr)
+        extra = EXTRAS.get(str(error.name).split(".")[0], "train")
+        print(f"{program} {name}: error: {error.name} is not installed; it comes with the extra {extra}: "
+              f"pip install '.[{extra}]' in tensegym's sources", file=sys.stderr)  # fmt: skip
         return 2
     except BrokenPipeError:
         raise
     except (TensegymError, OSError, UnicodeDecodeError) as error:
         print(f"{program} {name}: error: {' '.join(str(error).split())}", file=sys.stderr)
         return 2
-    print(json.dumps(report.data, allow_nan=False) if as_json else report.text)
+    print(to_json(report.data) if as_json else report.text)
     return 0 if report.passed else 1
 
 

@@ -6,6 +6,7 @@ import csv
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from tensegym.report import Report, table
 from tensegym.robot.gait import GaitMeter
 from tensegym.robot.robot import LARGEST_TIME_STEP, TensegrityRobot
 from tensegym.robot.start_poses import start_at
+
+from .options import Within
 
 
 @dataclass(frozen=True)
@@ -32,13 +35,13 @@ class Simulate:
     """A preset (six_rod, six_rod_flexible, paper) or a TOML file."""
     start: str = ""
     """Start pose: a face by its nodes such as 3-5-12, paper-1 or paper-2; default: the first face."""
-    heading: float = 0.0
+    heading: Annotated[float, Within(-1e3, 1e3, "rad")] = 0.0
     """Turn about the vertical [rad]."""
     ground: bool = True
     """--no-ground: free flight without gravity."""
-    dt: float = 1e-3
+    dt: Annotated[float, Within(1e-6, LARGEST_TIME_STEP, "s")] = 1e-3
     """Physics time step [s]."""
-    sample: float = 0.01
+    sample: Annotated[float, Within(1e-6, 10.0, "s")] = 0.01
     """Time between rows of the output [s]."""
 
     def run(self) -> Report:
@@ -48,9 +51,6 @@ class Simulate:
         if self.out.is_dir():
             raise InputError(f"--out {self.out} is a folder; give a file")
         times, angles = read_commands(self.commands, len(design.structure.stiff_cables))
-        for name, value, high in (("dt", self.dt, LARGEST_TIME_STEP), ("sample", self.sample, 10.0)):
-            if not 1e-6 <= value <= high:
-                raise InputError(f"{name} = {value!r} is outside [1e-06, {high:g}] s")
         every = round(self.sample / self.dt)
         if every < 1 or not math.isclose(every * self.dt, self.sample, rel_tol=1e-6):
             raise InputError(f"sample = {self.sample:g} s must be a whole number of steps of dt = {self.dt:g} s")

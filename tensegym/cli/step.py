@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityR
 from tensegym.structure.faces import face_by_nodes
 
 from .figures import PERIOD, draw_drives, draw_storyboard, record_step
+from .options import Within
 
 
 @dataclass(frozen=True)
@@ -30,9 +31,9 @@ class Step:
 
     face: str = ""
     """Face to start on, by its nodes, such as 3-5-12; default: the first one that the drives tip."""
-    drives: tuple[int, ...] = ()
+    drives: tuple[Annotated[int, Within(1, 1000)], ...] = ()
     """Drives that pull, counted from 1; default: the first choice of one to three that tips."""
-    depth: float = 0.3
+    depth: Annotated[float, Within(0.0, 1.0)] = 0.3
     """Part of the stiff cables' rest length that is wound in."""
     all_faces: bool = False
     """Instead: try every choice of one to three drives from every face, at --depth and at the design's deepest pull;
@@ -41,7 +42,7 @@ class Step:
     """A preset (six_rod, six_rod_flexible, paper) or a TOML file."""
     out: Path = Path("step")
     """Folder to write in."""
-    dt: float = 2e-3
+    dt: Annotated[float, Within(LEAST_TIME_STEP, LARGEST_TIME_STEP, "s")] = 2e-3
     """Physics time step [s]."""
 
     def run(self) -> Report:
@@ -49,9 +50,8 @@ class Step:
         if not 0 < self.depth <= design.stiff_cable.max_pull:
             limit = design.stiff_cable.max_pull
             raise InputError(f"depth = {self.depth!r} is outside (0, {limit:g}], the design's max_pull")
-        low, high = LEAST_TIME_STEP, LARGEST_TIME_STEP
-        if not low <= self.dt <= high or abs(PERIOD / self.dt - round(PERIOD / self.dt)) > 1e-6:
-            raise InputError(f"dt = {self.dt!r} must be in [{low:g}, {high:g}] s and divide {PERIOD} s")
+        if abs(PERIOD / self.dt - round(PERIOD / self.dt)) > 1e-6:
+            raise InputError(f"dt = {self.dt!r} s must divide {PERIOD} s")
         if self.out.exists() and not self.out.is_dir():
             raise InputError(f"--out {self.out} is a file; give a folder")
         require_matplotlib()

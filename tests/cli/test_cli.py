@@ -96,7 +96,7 @@ def test_the_console_script_gives_one_line_and_no_traceback(tmp_path):
 
 def test_a_missing_library_is_named_with_the_extra_that_brings_it(cli, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    assert_refused(cli("step", "--out", tmp_path / "s"), "matplotlib is not installed", "tensegym[train]")
+    assert_refused(cli("step", "--out", tmp_path / "s"), "matplotlib is not installed", "pip install '.[train]'")
     assert not (tmp_path / "s").exists()
 
 

@@ -95,5 +95,5 @@ def test_bad_input(cli, tmp_path, monkeypatch, argv, words):
 def test_a_missing_library_is_named_with_the_extra_that_brings_it(cli, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setitem(sys.modules, "ray", None)
-    assert_refused(cli("design", "run", "--engine", "ray"), "ray is not installed", "tensegym[cluster]")
+    assert_refused(cli("design", "run", "--engine", "ray"), "ray is not installed", "pip install '.[cluster]'")
     assert not list(tmp_path.iterdir())

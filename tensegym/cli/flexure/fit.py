@@ -5,10 +5,11 @@ from __future__ import annotations
 import time
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import tyro
 
+from tensegym.cli.options import Seed, Within
 from tensegym.errors import InputError
 from tensegym.flexure.hinge import symmetry_of
 from tensegym.flexure.hinge.presets import MM
@@ -40,13 +41,13 @@ class Fit:
     """What to fit to --data."""
     options: HingeOptions = field(default_factory=HingeOptions)
     box: BoxOptions = field(default_factory=BoxOptions)
-    states: int = 600
+    states: Annotated[int, Within(1, 100_000)] = 600
     """FEM states to fit."""
-    held_out: int = 300
+    held_out: Annotated[int, Within(0, 100_000)] = 300
     """Random wrenches to judge the models on."""
-    seed: int = 0
+    seed: Seed = 0
     """Of the fitted states."""
-    elements: int = 16
+    elements: Annotated[int, Within(1, 1000)] = 16
     """Beam elements a leaf of length L."""
 
     def run(self) -> Report:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Annotated
 
+from tensegym.cli.options import Within
 from tensegym.errors import InputError
 from tensegym.flexure.hinge import PRESETS, Hinge, as_hinge, preset
 from tensegym.flexure.hinge.presets import MM
@@ -16,27 +18,27 @@ _LENGTHS = ("length", "height", "width", "thickness", "rib", "arm")
 class HingeOptions:
     """Dimensions and material in place of a preset's or a file's own."""
 
-    length_mm: float | None = None
+    length_mm: Annotated[float, Within(0.0, 1e5, "mm")] | None = None
     """Presets: distance of the tip from the base at rest, L."""
-    height_mm: float | None = None
+    height_mm: Annotated[float, Within(0.0, 1e5, "mm")] | None = None
     """Presets: height H of the leaves' span."""
-    width_mm: float | None = None
+    width_mm: Annotated[float, Within(0.0, 1e5, "mm")] | None = None
     """Presets: width W out of plane."""
-    thickness_mm: float | None = None
+    thickness_mm: Annotated[float, Within(0.0, 1e5, "mm")] | None = None
     """Presets: thickness t of every leaf."""
-    rib_mm: float | None = None
+    rib_mm: Annotated[float, Within(0.0, 1e5, "mm")] | None = None
     """trls2: extent of a rib along the leaf."""
-    crossing: float | None = None
+    crossing: Annotated[float, Within(0.0, 1.0)] | None = None
     """cross-spring: fraction of the leaves' length at which they cross."""
-    arm_mm: float | None = None
+    arm_mm: Annotated[float, Within(0.0, 1e5, "mm")] | None = None
     """Presets: lever of the stand beyond the tip."""
-    youngs_modulus_GPa: float | None = None
+    youngs_modulus_GPa: Annotated[float, Within(0.0, 1e5, "GPa")] | None = None
     """E of the material."""
-    poisson_ratio: float | None = None
+    poisson_ratio: Annotated[float, Within(-1.0, 0.5)] | None = None
     """nu of the material; only the plate modulus uses it."""
     modulus: str | None = None
     """beam: E; plate: E/(1-nu^2); factor: --factor times E."""
-    factor: float | None = None
+    factor: Annotated[float, Within(0.0, 1e6)] | None = None
     """The user's factor on E, with --modulus factor."""
 
     def apply(self, name: str) -> Hinge:
@@ -61,9 +63,9 @@ class HingeOptions:
 class BoxOptions:
     """Where the models are fitted."""
 
-    max_angle_deg: float | None = None
+    max_angle_deg: Annotated[float, Within(0.0, 90.0, "deg")] | None = None
     """Largest rotation; default: the hinge's own (30)."""
-    max_force_N: float | None = None
+    max_force_N: Annotated[float, Within(0.0, 1e6, "N")] | None = None
     """Largest force at the tip on each base axis; default: the pure moment at the largest rotation over L."""
 
     @property

@@ -6,10 +6,12 @@ import csv
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 
 from tensegym.arrays import FloatArray
+from tensegym.cli.options import Within
 from tensegym.errors import InputError
 from tensegym.files import replace_file
 from tensegym.flexure.hinge import Hinge
@@ -41,7 +43,7 @@ class Solve:
     """fem, potential, planar (constant k), paper (stiffness diagrams) or torsion (1-DoF)."""
     options: HingeOptions = field(default_factory=HingeOptions)
     box: BoxOptions = field(default_factory=BoxOptions)
-    elements: int = 16
+    elements: Annotated[int, Within(1, 1000)] = 16
     """Beam elements a leaf of length L."""
 
     def run(self) -> Report:

@@ -6,12 +6,13 @@ import csv
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import tyro
 from scipy.interpolate import CubicSpline
 
+from tensegym.cli.options import Within
 from tensegym.errors import FlexureError, InputError
 from tensegym.files import replace_file
 from tensegym.flexible.stand import ARM, LENGTH, Pull, Vibration, pull, release
@@ -43,17 +44,17 @@ class Stand:
     """A preset (x-hinge, leaf-spring, trls2, tfch, cross-spring) of 40 mm, or a TOML file."""
     out: Path
     """Folder for measured.csv, stand.csv, fig5.png, vibration.png, vibration.csv and pictures/; made if missing."""
-    points: int = 31
+    points: Annotated[int, Within(3, 10_000)] = 31
     """States pulled to, over +-98 % of the fitted range."""
-    width: int = 640
+    width: Annotated[int, Within(200, 2000, "px")] = 640
     """Pixels across a picture."""
-    release_deg: float = 20.0
+    release_deg: Annotated[float, Within(0.0, 90.0, "deg")] = 20.0
     """Where the arm is let go."""
-    seconds: float = 3.0
+    seconds: Annotated[float, Within(0.001, 1000.0, "s")] = 3.0
     """How long the vibration is followed."""
-    loss_time_ms: float = 0.0
+    loss_time_ms: Annotated[float, Within(0.0, 1000.0, "ms")] = 0.0
     """Structural damping of the vibration: B = loss time x K."""
-    dt_ms: float = 1.0
+    dt_ms: Annotated[float, Within(0.001, 4.0, "ms")] = 1.0
     """Time step."""
     options: HingeOptions = field(default_factory=HingeOptions)
     box: BoxOptions = field(default_factory=BoxOptions)
@@ -61,10 +62,6 @@ class Stand:
     def run(self) -> Report:
         if not self.out.parent.is_dir():
             raise FileNotFoundError(f"no folder {self.out.parent} to make {self.out.name} in")
-        if self.points < 3 or not 200 <= self.width <= 2000:
-            raise InputError(f"points = {self.points}, width = {self.width}; give 3 points or more, 200 to 2000 px")
-        if not (0 < self.seconds < 1000 and 0 < self.dt_ms <= 4 and 0 <= self.loss_time_ms < 1000):
-            raise InputError("give seconds in (0, 1000), dt_ms in (0, 4], loss_time_ms in [0, 1000)")
         require_matplotlib()
         hinge = self.options.apply(self.hinge)
         joint = fit_joint(hinge, max_angle=self.box.max_angle, max_force=self.box.max_force_N, held_out=0)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
+from tensegym.cli.options import Seed, Within
 from tensegym.flexure.fem.arm_sweep import arm_sweep
 from tensegym.flexure.fem.sampling import HELD_OUT_SEED
 from tensegym.flexure.hinge import PAPER_HINGES
@@ -40,15 +41,15 @@ class Table:
     """Presets or TOML files."""
     options: HingeOptions = field(default_factory=HingeOptions)
     box: BoxOptions = field(default_factory=BoxOptions)
-    table_angle_deg: float = 24.0
+    table_angle_deg: Annotated[float, Within(0.1, 89.0, "deg")] = 24.0
     """Half range of Table 1's sweep; the paper does not print it."""
-    states: int = 600
+    states: Annotated[int, Within(1, 100_000)] = 600
     """FEM states to fit."""
-    held_out: int = 300
+    held_out: Annotated[int, Within(0, 100_000)] = 300
     """Random wrenches held out."""
-    loops: int = 100
+    loops: Annotated[int, Within(1, 100_000)] = 100
     """Random closed loops."""
-    seed: int = 0
+    seed: Seed = 0
     """Of the fitted states."""
 
     def run(self) -> Report:

@@ -10,6 +10,7 @@ from typing import Annotated
 
 import tyro
 
+from tensegym.cli.options import Within
 from tensegym.errors import FlexureError, InputError
 from tensegym.files import replace_file
 from tensegym.flexure.measured.base_frame import BaseFrame, frame_at_rest
@@ -31,7 +32,7 @@ class Track:
 
     images: Annotated[tuple[Path, ...], tyro.conf.Positional]
     """Pictures, one state each."""
-    arm_length_mm: float
+    arm_length_mm: Annotated[float, Within(0.1, 1e5, "mm")]
     """Length of the painted arm: the scale of every picture."""
     out: Path
     """CSV to write: image, angle_deg, x_mm, y_mm and the loads."""
@@ -39,13 +40,13 @@ class Track:
     """CSV with a column image (file names) and the loads they show: force_N, or Fx_N and Fy_N, or torque_Nmm."""
     rest: Path | None = None
     """Picture of the unloaded stand: fixes the base axes, whatever the camera's tilt and the marker's place."""
-    hinge_length_mm: float = 40.0
+    hinge_length_mm: Annotated[float, Within(0.1, 1e5, "mm")] = 40.0
     """With --rest: where the tip is at rest, on the x axis."""
-    arm_start_mm: float = 0.0
+    arm_start_mm: Annotated[float, Within(-1e5, 1e5, "mm")] = 0.0
     """How far beyond the hinge's tip the painted arm begins."""
-    marker_x_mm: float = 0.0
+    marker_x_mm: Annotated[float, Within(-1e5, 1e5, "mm")] = 0.0
     """Without --rest: the marker's centre in base axes."""
-    marker_y_mm: float = 0.0
+    marker_y_mm: Annotated[float, Within(-1e5, 1e5, "mm")] = 0.0
     """Without --rest: the marker's centre in base axes."""
     overlay: Path | None = None
     """Folder for a copy of each picture with the arm and the marker that were found drawn on it."""
@@ -53,8 +54,6 @@ class Track:
     def run(self) -> Report:
         if not self.images:
             raise InputError("no pictures given")
-        if not (0.0 < self.arm_length_mm < float("inf")):
-            raise InputError(f"arm_length_mm = {self.arm_length_mm:g} must be a positive length")
         folder = self.out.parent
         if not folder.is_dir():
             raise FileNotFoundError(f"no folder {folder} to write {self.out.name} in")

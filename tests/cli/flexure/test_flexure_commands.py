@@ -149,10 +149,10 @@ def test_curves(cli, tmp_path):
 
 @pytest.mark.parametrize(("options", "words"), [
     (("--thickness-mm", 0), ("thickness = 0",)),
-    (("--poisson-ratio", 0.6), ("poisson_ratio = 0.6", "(-1, 0.5)")),
+    (("--poisson-ratio", 0.6), ("poisson_ratio = 0.6", "[-1, 0.5]")),
     (("--modulus", "shell"), ("modulus = 'shell'",)),
     (("--max-force-N", 8), ("past buckling", "lower max_force")),
-    (("--max-force-N", -1), ("max_force = -1 N",)),
+    (("--max-force-N", -1), ("max_force_N = -1.0", "[0, 1e+06] N")),
     (("--max-angle-deg", 100), ("max_angle",)),
     (("--states", 4), ("count = 4",)),
     (("--crossing", 0.3), ("has no 'crossing'",)),

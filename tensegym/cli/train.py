@@ -1,0 +1,104 @@
+"""`tensegym train`: a new training in a folder of its own, or one that was stopped gone on with."""
+
+from __future__ import annotations
+
+import csv
+import json
+import platform
+import subprocess
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from tensegym.errors import InputError
+from tensegym.report import Report, table
+from tensegym.train.checkpoint import last_state
+from tensegym.train.config import TrainConfig, load_config
+from tensegym.train.curve import draw_curve
+from tensegym.train.ppo import make_env, train
+from tensegym.train.start_policy import check_start
+from tensegym.train.watch import CURVE_FIELDS
+
+from .options import Count, Seed
+
+
+@dataclass(frozen=True)
+class Train:
+    """Train a rolling policy with PPO and save it with its curve."""
+
+    config: str = "rolling"
+    """A committed config (rolling, onboard, flexible, conditioned, carry, climb, steep) or the path of a YAML file."""
+    out: Path | None = None
+    """Folder of the run; default runs/CONFIG-sSEED. One folder a run."""
+    seed: Seed = 0
+    """Seed of the networks, the episodes and the exploration."""
+    steps: Count | None = None
+    """Environment steps in all, in place of the config's; with --resume, a longer schedule to go on with."""
+    resume: bool = False
+    """Go on from the folder's last checkpoint, with its own config and seed."""
+
+    def run(self) -> Report:
+        out = self.out or Path("runs") / f"{Path(self.config).stem}-s{self.seed}"
+        config, state = self._go_on(out) if self.resume else self._begin(out)
+        steps = train(config, state["seed"], out, state)
+        with (out / "curve.csv").open(newline="") as file:
+            rows = list(csv.DictReader(file))
+        draw_curve({out.name: out / "curve.csv"}, out / "curve.png")
+        best = max((float(row["speed_lps"]) for row in rows), default=None)
+        data = {"out": str(out), "seed": state["seed"], "steps": steps, "best_median_speed_lps": best,
+                "last": {name: float(value) for name, value in rows[-1].items()} if rows else {}}  # fmt: skip
+        return Report(table(["run", "steps", "best median speed L/s"], [[str(out), steps, best]]), data)
+
+    def _begin(self, out: Path) -> tuple[TrainConfig, dict[str, Any]]:
+        """A new run's folder; nothing is written before all of it has been looked at."""
+        if out.exists() and not out.is_dir():
+            raise InputError(f"--out {out} is a file; give a folder")
+        if out.exists() and any(out.iterdir()):
+            raise InputError(f"folder {out} is not empty; take another --out, or --resume to go on with it")
+        config = load_config(self.config)
+        if self.steps is not None:
+            config = replace(config, steps=self.steps)
+        _check(config)
+        state = {"seed": self.seed, "steps": 0, "seconds": 0.0}
+        out.mkdir(parents=True, exist_ok=True)
+        _write_config(config, out)
+        (out / "versions.json").write_text(json.dumps(_versions(), indent=1))
+        (out / "state.json").write_text(json.dumps(state))
+        with (out / "curve.csv").open("w", newline="") as file:
+            csv.writer(file).writerow(CURVE_FIELDS)
+        return config, state
+
+    def _go_on(self, out: Path) -> tuple[TrainConfig, dict[str, Any]]:
+        """The run in a folder, with a longer schedule if steps are given; its state keeps the ends of its stages."""
+        state = last_state(out)
+        config = load_config(str(out / "config.yaml"))
+        if self.steps is not None:
+            if self.steps <= state["steps"]:
+                raise InputError(f"steps = {self.steps} must be above the {state['steps']} that {out} stands at")
+            state["stages"] = [*state.get("stages", [config.steps]), self.steps]
+            config = replace(config, steps=self.steps)
+            _write_config(config, out)
+        return config, state
+
+
+def _check(config: TrainConfig) -> None:
+    """A bad env argument, or a start that does not fit it, fails here, before anything is written."""
+    probe = make_env(config)
+    spaces = probe.observation_space.shape, probe.action_space.shape
+    probe.close()
+    if config.start is not None:
+        check_start(config, *spaces)
+
+
+def _write_config(config: TrainConfig, out: Path) -> None:
+    (out / "config.yaml").write_text(yaml.safe_dump(config.as_dict(), sort_keys=False))
+
+
+def _versions() -> dict[str, str]:
+    names = ("tensegym", "pybullet", "numpy", "numba", "gymnasium", "stable-baselines3", "torch")
+    found = {"python": platform.python_version(), **{n: version(n) for n in names}}
+    commit = subprocess.run(["git", "-C", Path(__file__).parent, "rev-parse", "HEAD"], capture_output=True, text=True)
+    return found | {"commit": commit.stdout.strip() or "not a git checkout"}
