@@ -17,17 +17,17 @@ from timing import OneCore, Row, in_turn, row
 
 from tensegym.bullet.c_interface import client_handle, push_and_step
 from tensegym.design.design import Payload, RobotDesign
-from tensegym.physics.cable_law import DAMPING, LOCAL_A, LOCAL_B, STIFFNESS
+from tensegym.physics.model import DAMPING, END_A, END_B, STIFFNESS
 from tensegym.robot.robot import TensegrityRobot
 
 BLOCK = 100  # substeps
 
 
 @njit
-def _replay(client, total, bodies, pinned, poses, wrenches):
-    handle = client_handle(client, total)
+def _replay(engine, poses, wrenches):
+    handle = client_handle(engine.client, engine.body_count)
     for i in range(len(poses)):
-        push_and_step(handle, bodies, pinned, poses[i], wrenches[i])
+        push_and_step(handle, engine.body_ids, engine.two_link_rows, poses[i], wrenches[i])
 
 
 class Rolling:
@@ -43,7 +43,7 @@ class Rolling:
             robot.step(500)
         self.poses = np.zeros((BLOCK, *self.ours.world.poses.shape))
         self.wrenches = np.zeros((BLOCK, len(self.ours.world.poses), 6))
-        _replay(-1, 0, *self.reference.world.engine[3:5], self.poses[:0], self.wrenches[:0])  # compiles it
+        _replay(self.reference.world.hand_over()._replace(client=-1), self.poses[:0], self.wrenches[:0])  # compiles it
 
     def close(self) -> None:
         for robot in (self.ours, self.reference, self.naive_robot):
@@ -65,7 +65,7 @@ class Rolling:
             began = time.thread_time()
             self.reference.step()
             spent += time.thread_time() - began
-            self.poses[i], self.wrenches[i] = world.poses, self.reference._wrenches
+            self.poses[i], self.wrenches[i] = world.poses, self.reference._out.wrenches
         end = world.save()
         world.restore(state)
         self.bare = self._replayed()
@@ -75,9 +75,9 @@ class Rolling:
         return spent / BLOCK * 1e6
 
     def _replayed(self) -> float:
-        client, total, _, bodies, pinned, *_ = self.reference.world.engine
+        engine = self.reference.world.hand_over()
         began = time.thread_time()
-        _replay(client, total, bodies, pinned, self.poses, self.wrenches)
+        _replay(engine, self.poses, self.wrenches)
         return time.thread_time() - began
 
     def bare_step(self) -> float:
@@ -88,24 +88,24 @@ class Rolling:
         """The obvious way at 1 ms, from where ours stands: a Python loop over cables, two forces each, end points by
         multiplyTransforms."""
         robot = self.naive_robot
-        world, cables, client = robot.world, robot.cables, robot.world.client
-        world.place(self.ours.poses_in_world[: len(world.bodies)], self.ours.velocities_in_world()[: len(world.bodies)])
+        world, model, client = robot.world, robot.model, robot.world.client
+        world.place(self.ours.poses_in_world, self.ours.velocities_in_world())
         natural, last = self.ours.natural_lengths.copy(), self.ours.lengths.copy()
         began = time.thread_time()
         for _ in range(BLOCK):
-            poses = [pybullet.getBasePositionAndOrientation(body, client) for body in world.bodies]
-            for c, (a, b) in enumerate(cables.ends):
-                params = cables.params[c]
-                pa, _ = pybullet.multiplyTransforms(*poses[a], params[LOCAL_A].tolist(), [0, 0, 0, 1])
-                pb, _ = pybullet.multiplyTransforms(*poses[b], params[LOCAL_B].tolist(), [0, 0, 0, 1])
+            poses = [pybullet.getBasePositionAndOrientation(body, client) for body in world.body_ids]
+            for c, (a, b) in enumerate(model.spring_bodies):
+                params = model.spring_params[c]
+                pa, _ = pybullet.multiplyTransforms(*poses[a], params[END_A].tolist(), [0, 0, 0, 1])
+                pb, _ = pybullet.multiplyTransforms(*poses[b], params[END_B].tolist(), [0, 0, 0, 1])
                 span = np.subtract(pb, pa)
                 length = np.linalg.norm(span)
                 stretch, rate = length - natural[c], (length - last[c]) / robot.dt
                 tension = max(0.0, params[STIFFNESS] * stretch + params[DAMPING] * rate) if stretch > 0 else 0.0
                 last[c] = length
                 force = tension / length * span
-                pybullet.applyExternalForce(world.bodies[a], -1, force, pa, pybullet.WORLD_FRAME, client)
-                pybullet.applyExternalForce(world.bodies[b], -1, -force, pb, pybullet.WORLD_FRAME, client)
+                pybullet.applyExternalForce(world.body_ids[a], -1, force, pa, pybullet.WORLD_FRAME, client)
+                pybullet.applyExternalForce(world.body_ids[b], -1, -force, pb, pybullet.WORLD_FRAME, client)
             pybullet.stepSimulation(client)
         return (time.thread_time() - began) / BLOCK * 1e6
 

@@ -12,26 +12,26 @@ from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
 from tensegym.design.design import RobotDesign
-from tensegym.physics.cable_law import DAMPING, LOCAL_A, LOCAL_B, STIFFNESS
-from tensegym.physics.robot_arrays import cable_arrays
+from tensegym.physics.model import DAMPING, END_A, END_B, STIFFNESS
+from tensegym.physics.robot_arrays import robot_model
 
 INTEGRATORS = {"MuJoCo Euler": "Euler", "MuJoCo implicitfast": "implicitfast", "MuJoCo RK4": "RK4"}
 
 
 def twin_xml(design: RobotDesign, dt: float, integrator: str = "Euler", ground: bool = True) -> str:
     """MJCF of the design at time step dt [s]. Bodies, sites and tendons stand in the order of the kernel's arrays."""
-    cables = cable_arrays(design)
-    sites: list[list[str]] = [[] for _ in cables.masses]
+    model = robot_model(design)
+    sites: list[list[str]] = [[] for _ in model.masses]
     tendons = []
-    for c, (params, natural) in enumerate(zip(cables.params, cables.natural, strict=True)):
-        for side, local in enumerate((params[LOCAL_A], params[LOCAL_B])):
-            sites[cables.ends[c, side]].append(f'<site name="{c}-{side}" pos="{_text(local)}"/>')
+    for c, (params, natural) in enumerate(zip(model.spring_params, model.rest_lengths, strict=True)):
+        for side, local in enumerate((params[END_A], params[END_B])):
+            sites[model.spring_bodies[c, side]].append(f'<site name="{c}-{side}" pos="{_text(local)}"/>')
         tendons.append(
             f'<spatial stiffness="{params[STIFFNESS]:.17g}" damping="{params[DAMPING]:.17g}" '
             f'springlength="0 {natural:.17g}"><site site="{c}-0"/><site site="{c}-1"/></spatial>'
         )
     bodies = []
-    for b, pose in enumerate(cables.rest_poses):
+    for b, pose in enumerate(model.rest_poses):
         if b < len(design.standing.rods):
             half = design.standing.rod_lengths[b] / 2
             shape = f'<geom type="capsule" size="{design.rod(b).tube_outer_radius:.17g} {half:.17g}"/>'
@@ -39,7 +39,7 @@ def twin_xml(design: RobotDesign, dt: float, integrator: str = "Euler", ground: 
             shape = f'<geom type="sphere" size="{design.payload.radius:.17g}"/>'
         bodies.append(
             f'<body pos="{_text(pose[:3])}" quat="{_text(np.roll(pose[3:], 1))}"><freejoint/>'
-            f'<inertial pos="0 0 0" mass="{cables.masses[b]:.17g}" diaginertia="{_text(cables.inertias[b])}"/>'
+            f'<inertial pos="0 0 0" mass="{model.masses[b]:.17g}" diaginertia="{_text(model.inertias[b])}"/>'
             f"{shape}{''.join(sites[b])}</body>"
         )
     gravity = f"0 0 {-design.gravity if ground else 0:.17g}"

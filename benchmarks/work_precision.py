@@ -34,15 +34,15 @@ from twin import INTEGRATORS, Twin
 from tensegym.arrays import FloatArray
 from tensegym.design.design import RobotDesign
 from tensegym.errors import DesignError, SimulationError
-from tensegym.physics.cable_geometry import points_in_world
-from tensegym.physics.robot_arrays import cable_arrays
-from tensegym.physics.rod_rotation import step_back
+from tensegym.physics.geometry import points_at
+from tensegym.physics.readings import step_back
+from tensegym.physics.robot_arrays import robot_model
 from tensegym.report import table
 from tensegym.robot.robot import TensegrityRobot
 
 DESIGN = RobotDesign(spin_damping=0.0, drive=replace(RobotDesign().drive, speed_limit=1e-9))  # locked: see natural_at
 BARE = DESIGN.with_(stiff_cable=replace(DESIGN.stiff_cable, damping=0.0))  # they act on the twin's slack tendons too
-CABLES = cable_arrays(DESIGN)
+MODEL = robot_model(DESIGN)
 SPIN = np.array([2.0, 3.0, 1.0])  # rad/s, of the whole robot at the start
 DEPTHS = np.array([0.06, 0, 0.06, 0, 0.06, 0])  # m
 TURN, HELD, SECONDS, SAMPLE = 0.3, 0.6, 1.0, 0.02  # s: winding ends, paying out ends, the end, between two samples
@@ -53,16 +53,15 @@ PICTURE = Path(__file__).parent.parent / "docs" / "work_precision.png"
 
 def natural_at(t: float) -> FloatArray:
     """Rest lengths (c,) of all cables [m]."""
-    natural = CABLES.natural.copy()
-    first = CABLES.first_driven
-    natural[first : first + CABLES.driven] -= DEPTHS * max(0.0, min(t, HELD - t)) / TURN
+    natural = MODEL.rest_lengths.copy()
+    natural[MODEL.driven] -= DEPTHS * max(0.0, min(t, HELD - t)) / TURN
     return natural
 
 
 def start() -> tuple[FloatArray, FloatArray]:
     """Poses (b, 7) and velocities (b, 6) of the standing robot, turning as one body about its centre of mass."""
-    poses, velocities = CABLES.rest_poses.copy(), np.empty((len(CABLES.masses), 6))
-    poses[:, :3] -= CABLES.masses @ poses[:, :3] / CABLES.masses.sum()
+    poses, velocities = MODEL.rest_poses.copy(), np.empty((len(MODEL.masses), 6))
+    poses[:, :3] -= MODEL.masses @ poses[:, :3] / MODEL.masses.sum()
     velocities[:, :3], velocities[:, 3:] = np.cross(SPIN, poses[:, :3]), SPIN
     return poses, velocities
 
@@ -125,8 +124,8 @@ def angular_momentum(robot: Ours | Theirs) -> FloatArray:
     poses = robot.poses().copy()
     step_back(poses, velocities, robot.lag * robot.dt)
     turns = Rotation.from_quat(poses[:, 3:])
-    spin = turns.apply(CABLES.inertias * turns.inv().apply(velocities[:, 3:]))
-    return (CABLES.masses[:, None] * np.cross(poses[:, :3], velocities[:, :3]) + spin).sum(axis=0)
+    spin = turns.apply(MODEL.inertias * turns.inv().apply(velocities[:, 3:]))
+    return (MODEL.masses[:, None] * np.cross(poses[:, :3], velocities[:, :3]) + spin).sum(axis=0)
 
 
 def move(robot: Ours | Theirs, acceleration: FloatArray) -> Motion:
@@ -144,9 +143,9 @@ def move(robot: Ours | Theirs, acceleration: FloatArray) -> Motion:
             began = time.thread_time()
             robot.step(natural_at(t), count)
             spent += time.thread_time() - began
-        poses, at = robot.poses(), np.empty((len(CABLES.feet), 3))
-        points_in_world(poses, CABLES.feet, CABLES.foot_points, at)
-        nodes.append(at - CABLES.masses @ poses[:, :3] / CABLES.masses.sum())
+        poses = robot.poses()
+        at = points_at(poses, MODEL.node_bodies, MODEL.node_points)
+        nodes.append(at - MODEL.masses @ poses[:, :3] / MODEL.masses.sum())
         momenta.append(angular_momentum(robot))
     drift = np.linalg.norm(np.array(momenta) - momenta[0], axis=1).max() / np.linalg.norm(momenta[0])
     return Motion(np.array(nodes), float(drift), np.array([(SECONDS - HELD) / spent]))

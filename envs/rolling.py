@@ -184,7 +184,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         self.robot.step(self.settle_steps)
         self.meter = GaitMeter(self.robot, self.direction)
         self._gait = self.meter.metrics().as_dict()
-        self._account = self.robot.account()
+        self._totals = self.robot.totals()
         self._along = float(self.direction @ self.robot.centre_of_mass_in_world()[:2])
         observation, _, _ = self._observe()
         return observation, {"face": face, "heading": heading, "direction": direction}
@@ -233,15 +233,15 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
                     {"termination": reason, "reward_terms": reward_terms(self.weights, 0.0, 0.0, 0.0),
                      "gait": self._gait})  # fmt: skip
         self.meter.update(nodes, velocities)
-        account, length = robot.account(), robot.design.length
+        totals, length = robot.totals(), robot.design.length
         along = float(self.direction @ robot.centre_of_mass_in_world()[:2])
         terms = reward_terms(
             self.weights,
             (along - self._along) / length,
-            (account.foot_path - self._account.foot_path) / length,
-            account.electrical_energy - self._account.electrical_energy,
+            (totals.foot_path - self._totals.foot_path) / length,
+            totals.electrical_energy - self._totals.electrical_energy,
         )
-        self._along, self._account = along, account
+        self._along, self._totals = along, totals
         if self.render_mode == "human":
             self.render()
         self._gait = self.meter.metrics().as_dict()

@@ -33,7 +33,7 @@ class GaitRecorder:
         self.direction = env.direction
         self.length = robot.design.length
         self.current_limit = robot.design.drive.current_limit
-        self.driven = slice(robot.cables.first_driven, robot.cables.first_driven + len(robot.drives))
+        self.driven = robot.model.driven
         drive = robot.design.drive
         self.tension_limit = (drive.current_limit * drive.torque_constant * drive.gear_ratio * drive.gear_efficiency
                               / drive.spool_radius)  # fmt: skip

@@ -5,6 +5,9 @@ function. The file's symbol table says where that stands. Where it does not (ano
 build) AVAILABLE is False, and the Python calls of `bullet` do the work: they are the reference, and both give the same
 bits.
 
+What the functions take and what a status holds are those of the versions in KNOWN_VERSIONS; another version is not
+driven this way, AVAILABLE being False.
+
 Only clients of the DIRECT kind may be driven this way: they have done a command when the call that submits it returns.
 """
 
@@ -14,6 +17,8 @@ import ctypes
 import importlib.util
 import mmap
 import struct
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import llvmlite.binding as llvm
@@ -22,6 +27,7 @@ from numba import njit, types
 from numba.extending import intrinsic
 
 _WORLD_FRAME, _BASE = 2, -1
+KNOWN_VERSIONS = {"pybullet": ("3.2.7",), "pybullet-arm64": ("3.2.8",)}  # by distribution
 _EXPORTED = ("b3GetNumBodies", "b3SubmitClientCommand", "b3ProcessServerStatus", "b3InitStepSimulationCommand",
              "b3RequestActualStateCommandInit", "b3GetStatusActualState", "b3ApplyExternalForceCommandInit",
              "b3ApplyExternalForce", "b3ApplyExternalTorque", "b3GetStatusType")  # fmt: skip
@@ -40,8 +46,25 @@ _add_force = types.ExternalFunction("b3ApplyExternalForce", types.void(_word, _i
 _add_torque = types.ExternalFunction("b3ApplyExternalTorque", types.void(_word, _int, _int, _word, _int))
 
 
+def known_version() -> bool:
+    """Whether the installed PyBullet is one whose interface is known here."""
+    found = []
+    for name in KNOWN_VERSIONS:
+        with suppress(PackageNotFoundError):
+            found.append(version(name) in KNOWN_VERSIONS[name])
+    return bool(found) and all(found)
+
+
+def known_names() -> str:
+    """The known versions in words."""
+    return ", ".join(f"{name} {number}" for name, numbers in KNOWN_VERSIONS.items() for number in numbers)
+
+
 def _bind() -> bool:
-    """Make the functions above known to the compiler under their names; False where one of them is missing."""
+    """Make the functions above known to the compiler under their names; False where one of them is missing, or the
+    version is not known."""
+    if not known_version():
+        return False
     spec = importlib.util.find_spec("pybullet")
     if spec is None or spec.origin is None:
         return False
@@ -116,49 +139,50 @@ def request_state(handle, body):
 
 
 @njit(cache=True)
-def read_states(handle, window, bodies, pinned, poses, angles):
-    """Write poses (b, 7), position and xyzw, of the bodies' first links, and angles (p,) of the pins of the rows
-    ``pinned`` (p,); False where the engine knows one of the bodies no more.
+def read_states(handle, window, body_ids, two_link_rows, poses, angles):
+    """Write poses (k, 7), position and xyzw, of the bodies' first links, and angles (p,) of the pins of the rows
+    ``two_link_rows`` (p,); False where the engine knows one of the bodies no more.
 
-    window: see `state_window`; all 0 takes the interface's own way, which copies 30 kB a body.
+    window: see state_buffer.py; all 0 takes the interface's own way, which copies 30 kB a body.
     """
     pin = 0
-    for b in range(len(bodies)):
+    for b in range(len(body_ids)):
         if window[0] == 0:
-            _, _, address = request_state(handle, bodies[b])
+            _, _, address = request_state(handle, body_ids[b])
             known = address != 0
         else:
-            _submit(handle, _state_command(handle, bodies[b]))
+            _submit(handle, _state_command(handle, body_ids[b]))
             known, address = _kind_of(window[0]) == window[1], window[2]
         if not known:
             return False
         values = doubles(address)
         for i in range(7):
             poses[b, i] = values[i]
-        if pin < len(pinned) and pinned[pin] == b:
+        if pin < len(two_link_rows) and two_link_rows[pin] == b:
             angles[pin] = values[7]
             pin += 1
     return True
 
 
 @njit(cache=True)
-def push_and_step(handle, bodies, pinned, poses, wrenches):
-    """Give the bodies ``wrenches`` (b + p, 6) as `World.step` does and advance one time step.
+def push_and_step(handle, body_ids, two_link_rows, poses, wrenches):
+    """Give the bodies ``wrenches`` (k + p, 6) as `World.step` does and advance one time step.
 
     One command each: in a command of several, the interface writes each force over the one before (PyBullet 3.2.7).
     """
     row = wrenches.strides[0]
-    for b in range(len(bodies)):
+    for b in range(len(body_ids)):
         wrench = wrenches.ctypes.data + b * row
         command = _force_command(handle)
-        _add_force(command, bodies[b], _BASE, wrench, poses.ctypes.data + b * poses.strides[0], _WORLD_FRAME)
+        _add_force(command, body_ids[b], _BASE, wrench, poses.ctypes.data + b * poses.strides[0], _WORLD_FRAME)
         _submit(handle, command)
         command = _force_command(handle)
-        _add_torque(command, bodies[b], _BASE, wrench + 24, _WORLD_FRAME)
+        _add_torque(command, body_ids[b], _BASE, wrench + 24, _WORLD_FRAME)
         _submit(handle, command)
-    for p in range(len(pinned)):
+    for p in range(len(two_link_rows)):
+        moment = wrenches.ctypes.data + (len(body_ids) + p) * row + 24
         command = _force_command(handle)
-        _add_torque(command, bodies[pinned[p]], 0, wrenches.ctypes.data + (len(bodies) + p) * row + 24, _WORLD_FRAME)
+        _add_torque(command, body_ids[two_link_rows[p]], 0, moment, _WORLD_FRAME)
         _submit(handle, command)
     _submit(handle, _step_command(handle))
     _status(handle)

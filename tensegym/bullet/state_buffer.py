@@ -12,6 +12,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tensegym.arrays import FloatArray, IntArray
 
@@ -21,15 +22,15 @@ NONE = np.zeros(3, dtype=np.intp)
 _MEMORY, _REACH = Path("/proc/self/mem"), 1 << 18  # bytes searched after the status
 
 
-def find_window(handle: int, bodies: np.ndarray) -> IntArray:
+def find_window(handle: int, body_ids: NDArray[np.int32]) -> IntArray:
     """(3,) address of the client's status, kind of a status that answers with a state, address of the state's pose; all
-    0 where that is not sure, or ``handle`` is 0. ``bodies`` (b,) are the client's.
+    0 where that is not sure, or ``handle`` is 0. ``body_ids`` (k,) are the client's.
     """
-    if handle == 0 or not len(bodies) or not _MEMORY.exists():
+    if handle == 0 or not len(body_ids) or not _MEMORY.exists():
         return NONE
-    none, poses = np.zeros(0, dtype=int), np.zeros((len(bodies), 7))
-    status, kind, copied = request_state(handle, bodies[-1])
-    if not copied or not read_states(handle, NONE, bodies, none, poses, np.zeros(0)):
+    none, poses = np.zeros(0, dtype=int), np.zeros((len(body_ids), 7))
+    status, kind, copied = request_state(handle, body_ids[-1])
+    if not copied or not read_states(handle, NONE, body_ids, none, poses, np.zeros(0)):
         return NONE
     try:
         with _MEMORY.open("rb", buffering=0) as memory:
@@ -42,8 +43,8 @@ def find_window(handle: int, bodies: np.ndarray) -> IntArray:
         return NONE
     window = np.array([status, kind, status + at], dtype=np.intp)
     seen = np.zeros_like(poses)
-    known = read_states(handle, window, bodies, none, seen, np.zeros(0))
-    again = request_state(handle, bodies[0])[0]
+    known = read_states(handle, window, body_ids, none, seen, np.zeros(0))
+    again = request_state(handle, body_ids[0])[0]
     return window if known and again == status and (seen == poses).all() and _distinct(poses) else NONE
 
 

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import os
 import struct
+import threading
 import weakref
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from tensegym.arrays import FloatArray, IntArray
 from tensegym.errors import SimulationError
 
-from . import c_interface as direct_calls
+from . import c_interface
 from .bodies import load_body, make_ground
 from .camera import Camera
 from .engine import pybullet
@@ -25,6 +26,23 @@ from .state_buffer import find_window
 # Contact points of one body nearer to each other than this part of its size count as one, the last found of them: on a
 # surface of triangles that may be the one with a neighbour of the triangle a foot presses on, which then holds nothing
 _MERGING, _FINE_MERGING = 0.02, 0.004  # the engine's own; 1.4 mm on a rod of 0.7 m
+# The engine has one such setting for all clients of a process, so one world steps at a time
+_STEPPING = threading.RLock()
+
+
+class EngineAccess(NamedTuple):
+    """A client as compiled code drives it, see c_interface.py."""
+
+    client: int
+    """The client's number."""
+    body_count: int
+    """How many bodies it holds, the ground among them."""
+    window: IntArray
+    """(3,) where the engine writes states, see state_buffer.py."""
+    body_ids: NDArray[np.int32]
+    """(k,) the engine's numbers of the bodies."""
+    two_link_rows: IntArray
+    """(p,) rows in body_ids of those with two links."""
 
 
 def _disconnect(client: int) -> None:
@@ -42,7 +60,7 @@ class World:
 
     Rows of per-link arrays are the bodies' first links in the order of loading, then the second links in that order.
 
-    `compiled` says that substeps may go past Python (`substeps.run`): by default where that can be done. Raises
+    `compiled` says that substeps may go past Python (`c_interface`): by default where that can be done. Raises
     SimulationError where it is asked for and cannot.
     """
 
@@ -53,21 +71,21 @@ class World:
         if self.client < 0:
             raise SimulationError("PyBullet gave no physics client; close other worlds first")
         self._finalizer = weakref.finalize(self, _disconnect, self.client)
-        can_compile = direct_calls.AVAILABLE and not gui
+        can_compile = c_interface.AVAILABLE and not gui
         if compiled and not can_compile:
-            raise SimulationError("compiled substeps need a world with no window and a PyBullet with a symbol table: "
-                                  "leave out compiled=True")  # fmt: skip
+            raise SimulationError("compiled substeps need a world with no window and a PyBullet with a symbol table "
+                                  f"({c_interface.known_names()}): leave out compiled=True")  # fmt: skip
         self.compiled = can_compile if compiled is None else compiled
-        self.bodies: list[int] = []
-        self.pinned: list[int] = []
-        """Rows in `bodies` of those with two links."""
+        self.body_ids: list[int] = []
+        """The engine's numbers of the robot's bodies, in the order of loading."""
+        self._two_link_rows: list[int] = []
         self.ground: int | None = None
         self.camera = Camera(self.client)
         self._second_links: list[int] = []
         self._pack, self._pack_angles = struct.Struct("0d"), struct.Struct("0d")
         self.poses, self.angles = np.zeros((0, 7)), np.zeros(0)
-        self._numbers, self._pinned_rows = np.zeros(0, dtype=np.int32), np.zeros(0, dtype=int)
-        self._window: IntArray | None = None
+        self._access: EngineAccess | None = None
+        self._fine_contacts = False
         self._stale = True  # whether the engine has moved since `poses` and `angles` were read
         pybullet.setGravity(0, 0, -gravity, physicsClientId=self.client)
         pybullet.setTimeStep(dt, physicsClientId=self.client)
@@ -81,30 +99,35 @@ class World:
 
     def load(self, urdf: Path, pose: Sequence[float], friction: float) -> int:
         """Load a URDF of one link, or of two with a revolute joint, at pose (7,) position and xyzw of the first link's
-        centre of mass; returns its row in `bodies`."""
+        centre of mass; returns its row in `body_ids`."""
         body = load_body(self.client, urdf, pose, friction)
         if pybullet.getNumJoints(body, physicsClientId=self.client):
-            self.pinned.append(len(self.bodies))
-        self.bodies.append(body)
+            self._two_link_rows.append(len(self.body_ids))
+        self.body_ids.append(body)
         self._stale = True
-        self.poses, self.angles = np.zeros((len(self.bodies) + len(self.pinned), 7)), np.zeros(len(self.pinned))
-        self._pack = struct.Struct(f"{7 * len(self.bodies)}d")
-        self._pack_angles = struct.Struct(f"{len(self.pinned)}d")
-        self._second_links = [self.bodies[row] for row in self.pinned]
-        self._numbers, self._pinned_rows = np.array(self.bodies, dtype=np.int32), np.array(self.pinned, dtype=int)
-        return len(self.bodies) - 1
+        pins = len(self._two_link_rows)
+        self.poses, self.angles = np.zeros((len(self.body_ids) + pins, 7)), np.zeros(pins)
+        self._pack = struct.Struct(f"{7 * len(self.body_ids)}d")
+        self._pack_angles = struct.Struct(f"{pins}d")
+        self._second_links = [self.body_ids[row] for row in self._two_link_rows]
+        self._access = None
+        return len(self.body_ids) - 1
 
     def add_ground(self, friction: float, heights: FloatArray | None = None, cell: float = 0.0) -> None:
         """The plane z = 0, or a grid of heights (n, n) [m] over x and y, ``cell`` [m] apart, about the origin."""
-        self.ground = make_ground(self.client, friction, heights, cell)
+        self.ground, self._access = make_ground(self.client, friction, heights, cell), None
+        self._fine_contacts = heights is not None and len(heights) > 0
 
     def place(
         self, poses: FloatArray, velocities: FloatArray, angles: FloatArray | None = None,
         rates: FloatArray | None = None,
     ) -> None:  # fmt: skip
-        """Set every first link's pose (b, 7) and velocity (b, 6) linear, angular; pins' angles and rates, else 0."""
+        """Set every first link's pose (l, 7) and velocity (l, 6) linear, angular; pins' angles and rates, else 0.
+
+        Rows of second links, which follow, may be left out.
+        """
         self._stale = True
-        for body, pose, velocity in zip(self.bodies, poses.tolist(), velocities.tolist(), strict=True):
+        for body, pose, velocity in zip(self.body_ids, poses.tolist(), velocities.tolist(), strict=False):
             pybullet.resetBasePositionAndOrientation(body, pose[:3], pose[3:], physicsClientId=self.client)
             pybullet.resetBaseVelocity(body, velocity[:3], velocity[3:], physicsClientId=self.client)
         for pin, body in enumerate(self._second_links):
@@ -125,24 +148,26 @@ class World:
     def _read(self) -> None:
         read, client = pybullet.getBasePositionAndOrientation, self.client
         values: list[float] = []
-        for body in self.bodies:
+        for body in self.body_ids:
             position, orientation = read(body, client)
             values += position
             values += orientation
         self._pack.pack_into(self.poses.data, 0, *values)
-        if self.pinned:
+        if self._two_link_rows:
             angles = [pybullet.getJointState(body, 0, client)[0] for body in self._second_links]
             self._pack_angles.pack_into(self.angles.data, 0, *angles)
 
-    @property
-    def engine(self) -> tuple[int, int, IntArray, np.ndarray, IntArray, FloatArray, FloatArray]:
-        """What `substeps.run` works on: client, number of bodies in it, window onto their states, bodies' numbers, rows
-        of those with two links, poses, angles. Whoever takes it may step the world."""
+    def hand_over(self) -> EngineAccess:
+        """Let compiled code step the world: its client, and where states are read. `poses` and `angles` count as out of
+        date from now on."""
         self._stale = True
-        total = len(self.bodies) + (self.ground is not None)
-        if self._window is None:
-            self._window = find_window(direct_calls.client_handle(self.client, total), self._numbers)
-        return self.client, total, self._window, self._numbers, self._pinned_rows, self.poses, self.angles
+        if self._access is None:
+            total = len(self.body_ids) + (self.ground is not None)
+            numbers = np.array(self.body_ids, dtype=np.int32)
+            window = find_window(c_interface.client_handle(self.client, total), numbers)
+            rows = np.array(self._two_link_rows, dtype=np.int64)
+            self._access = EngineAccess(self.client, total, window, numbers, rows)
+        return self._access
 
     def step(self, wrenches: FloatArray) -> None:
         """Apply force and moment (l, 6) about the links' centres, world axes, and advance one time step.
@@ -152,29 +177,31 @@ class World:
         self._stale = True
         force, torque, client = pybullet.applyExternalForce, pybullet.applyExternalTorque, self.client
         rows = wrenches.tolist()
-        for body, pose, w in zip(self.bodies, self.poses.tolist(), rows, strict=False):
+        for body, pose, w in zip(self.body_ids, self.poses.tolist(), rows, strict=False):
             force(body, -1, w[:3], pose[:3], 2, client)
             torque(body, -1, w[3:], 2, client)
-        for body, w in zip(self._second_links, rows[len(self.bodies) :], strict=True):
+        for body, w in zip(self._second_links, rows[len(self.body_ids) :], strict=True):
             torque(body, 0, w[3:], 2, client)
         pybullet.stepSimulation(client)
 
     @contextmanager
-    def fine_contacts(self) -> Iterator[None]:
-        """Steps within it keep the contacts with neighbouring triangles of the ground apart.
-
-        The engine has one such setting for all clients of a process, so other worlds must not step meanwhile.
-        """
-        pybullet.setPhysicsEngineParameter(contactBreakingThreshold=_FINE_MERGING, physicsClientId=self.client)
-        try:
-            yield
-        finally:
-            if pybullet.isConnected(physicsClientId=self.client):
-                pybullet.setPhysicsEngineParameter(contactBreakingThreshold=_MERGING, physicsClientId=self.client)
+    def stepping(self) -> Iterator[None]:
+        """Steps are taken within it, no other world's meanwhile: on rough ground contacts with neighbouring triangles
+        are kept apart by a setting that the engine has once a process."""
+        with _STEPPING:
+            if not self._fine_contacts:
+                yield
+                return
+            pybullet.setPhysicsEngineParameter(contactBreakingThreshold=_FINE_MERGING, physicsClientId=self.client)
+            try:
+                yield
+            finally:
+                if pybullet.isConnected(physicsClientId=self.client):
+                    pybullet.setPhysicsEngineParameter(contactBreakingThreshold=_MERGING, physicsClientId=self.client)
 
     def push(self, velocity: ArrayLike) -> None:
         """Add a velocity (3,) [m/s] to every body."""
-        for body in self.bodies:
+        for body in self.body_ids:
             linear, angular = pybullet.getBaseVelocity(body, physicsClientId=self.client)
             pybullet.resetBaseVelocity(body, (np.add(linear, velocity)).tolist(), angular, physicsClientId=self.client)
 
@@ -185,7 +212,8 @@ class World:
     def advance(self) -> None:
         """One time step under the forces already given."""
         self._stale = True
-        pybullet.stepSimulation(self.client)
+        with _STEPPING:
+            pybullet.stepSimulation(self.client)
 
     # -- state ---------------------------------------------------------------------------------------
 

@@ -42,13 +42,12 @@ def record_step(robot: TensegrityRobot, tip: Tip, settle: float = 0.5) -> StepRe
     robot.step(round(settle / robot.dt))
     start = robot.time
     wanted = np.linspace(0, tip.pull.duration - PERIOD, FRAMES)
-    driven = slice(robot.cables.first_driven, robot.cables.first_driven + len(robot.drives))
 
     def watch(robot: TensegrityRobot) -> None:
         now = robot.time - start
         record.times.append(now)
         record.drives.append(robot.drives.copy())
-        record.tensions.append(robot.tensions[driven].copy())
+        record.tensions.append(robot.tensions[robot.model.driven].copy())
         if len(record.frames) < FRAMES and now >= wanted[len(record.frames)]:
             record.frames.append((now, render(robot)))
 

@@ -151,13 +151,13 @@ def _header(robot: TensegrityRobot) -> list[str]:
 
 
 def _row(robot: TensegrityRobot) -> list[float]:
-    state, first = robot.drives, robot.cables.first_driven
+    state, first = robot.drives, robot.model.first_driven
     values = [robot.time, *robot.node_positions_in_world().ravel()]
     values += robot.poses_in_world[: len(robot.design.standing.rods), 3:].ravel().tolist()
     values += [*robot.tensions.tolist(), *robot.flexure_angles.tolist(), *robot.flexure_moments.tolist()]
     for d, row in enumerate(state):
         values += [row[drives.COMMAND], row[drives.ROTOR_ANGLE] / robot.design.drive.gear_ratio, row[drives.CURRENT],
                    row[drives.LOAD_TORQUE], robot.natural_lengths[first + d]]  # fmt: skip
-    energies, account = robot.energies(), robot.account()
-    values += [energies.kinetic, energies.gravity, energies.elastic, account.drive_work, account.electrical_energy]
+    energies, totals = robot.energies(), robot.totals()
+    values += [energies.kinetic, energies.gravity, energies.elastic, totals.drive_work, totals.electrical_energy]
     return values

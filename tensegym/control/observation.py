@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from tensegym.arrays import FloatArray
 from tensegym.design.variation import Variation
 from tensegym.physics import drives
+from tensegym.physics.model import DAMPING, STIFFNESS
 from tensegym.robot.robot import SPEED_BOUND, TensegrityRobot
 
 
@@ -72,9 +73,9 @@ class FullObservation(Observation):
     """
 
     def __init__(self, robot: TensegrityRobot) -> None:
-        nodes, wound, cables = len(robot.cables.feet), len(robot.drives), len(robot.tensions)
+        nodes, wound, cables = len(robot.model.node_bodies), len(robot.drives), len(robot.tensions)
         self.length = robot.design.length
-        cable = robot.cables.params[:, 6:8]
+        cable = robot.model.spring_params[:, STIFFNESS : DAMPING + 1]
         self.tension_scale = max(1.0, 5 * robot.design.elastic_cable.pretension)
         reach = 2 * NODE_REACH * self.length
         most = float((cable[:, 0] * reach + cable[:, 1] * SPEED_BOUND).max()) / self.tension_scale
@@ -95,7 +96,7 @@ class FullObservation(Observation):
         turn = heading_rotation(direction)
         centre = robot.centre_of_mass_in_world()
         centre[2] = 0.0
-        contact = nodes[:, 2] - robot.cables.foot_radii <= 1e-3
+        contact = nodes[:, 2] - robot.model.foot_radii <= 1e-3
         values = np.concatenate([
             ((nodes - centre) @ turn.T).ravel() / self.length,
             (speeds @ turn.T).ravel() / self.length,

@@ -76,12 +76,11 @@ def run_pull(
     """Run a pull and its release on a robot as it stands; ``watch`` is called every ``period`` [s]."""
     start_face, start = current_face(robot), robot.centre_of_mass_in_world()
     angle = face_direction(robot, start_face, robot.node_positions_in_world())
-    driven = slice(robot.cables.first_driven, robot.cables.first_driven + len(robot.drives))
     peak = 0.0
     for tick in range(round(pull.duration / period)):
         robot.command(pull.angles(robot, tick * period))
         robot.step(round(period / robot.dt))
-        peak = max(peak, float(robot.tensions[driven].max(initial=0.0)))
+        peak = max(peak, float(robot.tensions[robot.model.driven].max(initial=0.0)))
         if watch:
             watch(robot)
     dx, dy = (robot.centre_of_mass_in_world() - start)[:2]

@@ -1,4 +1,4 @@
-"""The force law: cable lengths and their rates to tensions, and those to wrenches on the bodies, compiled.
+"""The force law: lengths of springs and their rates to tensions, and those to wrenches on the bodies, compiled.
 
 Cables are spring-dampers, T = max(0, k (l - l0) + c dl/dt) and exactly 0 when l <= l0; two-way cables (the paper's
 springs) leave out the max. Length rates are differenced in time, so only poses are read from the engine. Explicit
@@ -18,49 +18,46 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from .cable_geometry import cable_geometry, flexure_geometry
 from .mobility import mobility_matrix
+from .model import DAMPING, STIFFNESS, TWO_WAY
+from .vectors import KERNEL
 
-# Columns of a cable's parameter row
-LOCAL_A, LOCAL_B, STIFFNESS, DAMPING, TWO_WAY = slice(0, 3), slice(3, 6), 6, 7, 8
 _MAX_SWEEPS, _TOLERANCE = 200, 1e-6  # of the implicit solve; changes below 1e-6 of the largest tension end it
 _SLOW = 0.1  # (dt w)^2 and dt c A below which a flexure's row stays explicit; the scheme is stable up to 4
 
 
-@njit(cache=True)
-def explicit_tensions(cables, lengths, rates, natural, tensions):
-    """Tensions (c,) [N] of the state as it is."""
+@njit(**KERNEL)
+def explicit_tensions(springs, lengths, rates, natural, tensions):
+    """Write the tensions (s,) of the state as it is; springs (s, 9) as in Model."""
     for c in range(len(tensions)):
         stretch = lengths[c] - natural[c]
-        tension = cables[c, STIFFNESS] * stretch + cables[c, DAMPING] * rates[c]
-        if cables[c, TWO_WAY] == 0 and (stretch <= 0 or tension < 0):
+        tension = springs[c, STIFFNESS] * stretch + springs[c, DAMPING] * rates[c]
+        if springs[c, TWO_WAY] == 0 and (stretch <= 0 or tension < 0):
             tension = 0.0
         tensions[c] = tension
 
 
-@njit(cache=True)
-def implicit_tensions(poses, ends, cables, bodies, partner, pins, pin_params, turns, directions, lengths, rates,
-                      natural, dt, tensions):  # fmt: skip
-    """Tensions (c,) [N] at the end of the step; ``tensions`` holds the last step's as the starting guess."""
-    count = len(ends)
-    mobility = np.empty((count, count))
-    mobility_matrix(poses, ends, bodies, partner, pins, pin_params, turns, directions, mobility)
-    weight, target = np.empty(count), np.empty(count)
+@njit(**KERNEL)
+def implicit_tensions(model, out, lengths, rates, natural, dt, tensions):
+    """Write the tensions (s,) at the end of the step, from the geometry in ``out``; they start from the last step's."""
+    springs, mobility, count = model.spring_params, out.mobility, len(lengths)
+    mobility_matrix(model, out)
+    weight, target, residual = out.solve
     for c in range(count):
-        k, damping = cables[c, STIFFNESS], cables[c, DAMPING]
+        k, damping = springs[c, STIFFNESS], springs[c, DAMPING]
         weight[c] = 1 / (dt * damping + dt * dt * k)
         stretch = lengths[c] + dt * rates[c] - natural[c]
         target[c] = weight[c] * (k * stretch + damping * rates[c])
-        if cables[c, TWO_WAY] == 0 and stretch <= 0:
+        if springs[c, TWO_WAY] == 0 and stretch <= 0:
             target[c] = 0.0  # stays slack
             weight[c] = np.inf
             tensions[c] = 0.0
-    for c in range(count - len(pins), count):
-        k, damping = cables[c, STIFFNESS], cables[c, DAMPING]
+    for c in range(count - len(model.pin_bodies), count):
+        k, damping = springs[c, STIFFNESS], springs[c, DAMPING]
         if dt * mobility[c, c] * max(dt * k, damping) < _SLOW:
             weight[c] = np.inf
             tensions[c] = k * (lengths[c] - natural[c]) + damping * rates[c]
-    residual = target.copy()  # target - A T, kept up to date: a whole row a change, which vectorises
+    residual[:] = target  # target - A T, kept up to date: a whole row a change, which vectorises
     for c in range(count):
         if tensions[c] != 0:
             for d in range(count):
@@ -71,7 +68,7 @@ def implicit_tensions(poses, ends, cables, bodies, partner, pins, pin_params, tu
             if weight[c] == np.inf:
                 continue
             new = tensions[c] + (residual[c] - weight[c] * tensions[c]) / (mobility[c, c] + weight[c])
-            if cables[c, TWO_WAY] == 0 and new < 0:
+            if springs[c, TWO_WAY] == 0 and new < 0:
                 new = 0.0
             step = new - tensions[c]
             if step != 0:
@@ -84,9 +81,10 @@ def implicit_tensions(poses, ends, cables, bodies, partner, pins, pin_params, tu
             break
 
 
-@njit(cache=True)
-def wrenches_of(ends, turns, directions, tensions, wrenches):
-    """Force and moment (b, 6) on every body about its centre, world axes, by tensions (c,)."""
+@njit(**KERNEL)
+def tension_wrenches(ends, out, tensions):
+    """Write in out.wrenches what tensions (s,) do to the bodies; ends (s, 2) as Model.spring_bodies."""
+    wrenches, directions, arms = out.wrenches, out.directions, out.moment_arms
     wrenches[:] = 0.0
     for c in range(len(ends)):
         for side in range(2):
@@ -94,15 +92,4 @@ def wrenches_of(ends, turns, directions, tensions, wrenches):
             body = ends[c, side]
             for i in range(3):
                 wrenches[body, i] += pull * directions[c, i]
-                wrenches[body, 3 + i] -= tensions[c] * turns[c, side, i]
-
-
-@njit(cache=True)
-def start(poses, angles, ends, cables, pins, pin_params, springs):
-    """Set lengths, rates, tensions of ``springs`` (4, c) for a state at rest; its last row is the natural lengths."""
-    count, flexures = len(ends), len(ends) - len(pins)
-    turns, directions = np.empty((count, 2, 3)), np.empty((count, 3))
-    cable_geometry(poses, ends[:flexures], cables, turns, directions, springs[0])
-    flexure_geometry(poses, pins, pin_params, angles, flexures, turns, directions, springs[0])
-    springs[1] = 0.0
-    explicit_tensions(cables, springs[0], springs[1], springs[3], springs[2])
+                wrenches[body, 3 + i] -= tensions[c] * arms[c, side, i]

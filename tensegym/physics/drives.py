@@ -16,7 +16,9 @@ from numba import njit
 from tensegym.arrays import FloatArray
 from tensegym.design.design import Drive
 
-# Columns of a drive's state row
+from .vectors import KERNEL
+
+# Columns of a drive's state
 COMMAND, ROTOR_ANGLE, ROTOR_SPEED, CURRENT, VOLTAGE, SPOOL_ANGLE, LOAD_TORQUE, PULLED = range(8)
 STATE_SIZE = 8
 
@@ -26,12 +28,12 @@ def drive_constants(drive: Drive) -> FloatArray:
     return np.array(astuple(drive), dtype=float)
 
 
-@njit(cache=True, inline="always")
+@njit(**KERNEL)
 def _clip(value, limit):
     return min(max(value, -limit), limit)
 
 
-@njit(cache=True)
+@njit(**KERNEL)
 def drive_step(constants, state, tension, dt):
     """Advance one drive by ``dt`` [s] against its cable's ``tension`` [N]; updates ``state`` (8,) in place.
 

@@ -13,9 +13,9 @@ from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
 
-from .cable_geometry import cable_geometry, points_in_world, rotation_matrix
-from .cable_law import STIFFNESS, TWO_WAY
-from .rod_rotation import angular_velocity, step_back
+from .geometry import points_at, rotations_of, span
+from .model import STIFFNESS, TWO_WAY
+from .vectors import KERNEL, angular_velocity
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Energies:
 
 
 @dataclass(frozen=True)
-class Account:
+class Totals:
     """What has added up since the last reset. Lengths are horizontal [m], energies [J].
 
     foot_path is the mean over the grounded feet of the path of their centres, foot_path_sum the sum over them.
@@ -45,7 +45,7 @@ class Account:
     foot_path_sum: float
 
 
-@njit(cache=True)
+@njit(**KERNEL)
 def velocities_between(last_poses, poses, dt):
     """(b, 6) linear and angular velocities that took ``last_poses`` (b, 7) to ``poses`` in dt [s]."""
     out = np.empty((len(poses), 6))
@@ -56,13 +56,12 @@ def velocities_between(last_poses, poses, dt):
     return out
 
 
-@njit(cache=True)
-def nodes_in_world(poses, velocities, feet, foot_points):
-    """Positions (n, 3) [m] and velocities (n, 3) [m/s] of points fixed in bodies ``feet`` (n,) at ``foot_points``."""
-    positions, speeds = np.empty((len(feet), 3)), np.empty((len(feet), 3))
-    points_in_world(poses, feet, foot_points, positions)
-    for p in range(len(feet)):
-        body = feet[p]
+@njit(**KERNEL)
+def nodes_in_world(poses, velocities, bodies, points):
+    """Positions (n, 3) [m] and velocities (n, 3) [m/s] of the nodes at ``points`` (n, 3) [m] in ``bodies`` (n,)."""
+    positions, speeds = points_at(poses, bodies, points), np.empty((len(bodies), 3))
+    for p in range(len(positions)):
+        body = bodies[p]
         r0 = positions[p, 0] - poses[body, 0]
         r1 = positions[p, 1] - poses[body, 1]
         r2 = positions[p, 2] - poses[body, 2]
@@ -71,6 +70,13 @@ def nodes_in_world(poses, velocities, feet, foot_points):
         speeds[p, 1] = v[1] + v[5] * r0 - v[3] * r2
         speeds[p, 2] = v[2] + v[3] * r1 - v[4] * r0
     return positions, speeds
+
+
+def step_back(poses: FloatArray, velocities: FloatArray, dt: float) -> None:
+    """Move poses (b, 7) back along velocities (b, 6) by ``dt`` [s], in place."""
+    poses[:, :3] -= dt * velocities[:, :3]
+    back = Rotation.from_rotvec(-dt * velocities[:, 3:]) * Rotation.from_quat(poses[:, 3:])
+    poses[:, 3:] = back.as_quat()
 
 
 def momentum(
@@ -86,24 +92,26 @@ def momentum(
     return linear.sum(axis=0), (np.cross(poses[:, :3], linear) + spin).sum(axis=0)
 
 
-@njit(cache=True)
-def mechanical_energy(poses, velocities, masses, inertias, gravity, ends, cables, natural):
-    """Kinetic, gravity (zero at z = 0) and elastic energy [J]."""
+@njit(**KERNEL)
+def mechanical_energy(poses, velocities, masses, inertias, gravity, ends, params, natural):
+    """Kinetic, gravity (zero at z = 0) and the cables' elastic energy [J].
+
+    masses (b,), inertias (b, 3), ends (c, 2), params (c, 9): the model's, the latter two of cables alone; natural (c,)
+    their natural lengths [m]; gravity [m/s^2] downward.
+    """
     kinetic, potential, elastic = 0.0, 0.0, 0.0
-    rotation = np.empty((3, 3))
+    rotations = np.empty((len(poses), 3, 3))
+    rotations_of(poses, rotations)
     for b in range(len(poses)):
-        rotation_matrix(poses[b, 3:], rotation)
-        v = velocities[b]
+        v, rotation = velocities[b], rotations[b]
         kinetic += 0.5 * masses[b] * (v[0] ** 2 + v[1] ** 2 + v[2] ** 2)
         for i in range(3):
             spin = rotation[0, i] * v[3] + rotation[1, i] * v[4] + rotation[2, i] * v[5]
             kinetic += 0.5 * inertias[b, i] * spin * spin
         potential += masses[b] * gravity * poses[b, 2]
-    count = len(ends)
-    turns, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
-    cable_geometry(poses, ends, cables, turns, directions, lengths)
-    for c in range(count):
-        stretch = lengths[c] - natural[c]
-        if stretch > 0 or cables[c, TWO_WAY] == 1:
-            elastic += 0.5 * cables[c, STIFFNESS] * stretch * stretch
+    for c in range(len(ends)):
+        x, y, z = span(poses, rotations, ends, params, c)[0]
+        stretch = np.sqrt(x * x + y * y + z * z) - natural[c]
+        if stretch > 0 or params[c, TWO_WAY] == 1:
+            elastic += 0.5 * params[c, STIFFNESS] * stretch * stretch
     return kinetic, potential, elastic

@@ -1,54 +1,21 @@
-"""CableArrays: a design flattened into the arrays the force kernel reads."""
+"""A design flattened into the arrays of the kernel's model, and how stiff they are against a time step."""
 
 from __future__ import annotations
-
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from tensegym.arrays import FloatArray, IntArray
+from tensegym.arrays import FloatArray
 from tensegym.design.design import RobotDesign
 
-from . import cable_law as law
-from . import rod_rotation as rotation
-from .cable_geometry import cable_geometry, flexure_geometry
+from .drives import drive_constants
+from .geometry import spring_geometry
 from .mobility import mobility_matrix
-from .split_rods import PinArrays
+from .model import DAMPING, INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE, SPIN_DAMPING, STIFFNESS, Model, new_out
+from .split_rods import split_rod_inertia
 
 
-@dataclass(frozen=True)
-class CableArrays:
-    """Bodies are the rods in their order, then the payload, then the second halves of split rods, whose first halves
-    stand in the rods' rows; cables the elastic, the stiff, the payload's, then a row for each flexure.
-
-    ends (c, 2) bodies; params (c, 9) rows of the kernel's cable parameters; natural (c,) at rest [m], [rad] for
-    flexures; bodies (b, 4) rows of the kernel's body parameters; rest_poses (b, 7); masses (b,) [kg]; inertias (b, 3)
-    principal [kg m^2]; feet (n,) body of each node; foot_points (n, 3) in the body's frame [m]; foot_radii (n,) [m];
-    first_driven the row of the first stiff cable, driven how many there are.
-    """
-
-    ends: IntArray
-    params: FloatArray
-    natural: FloatArray
-    bodies: FloatArray
-    rest_poses: FloatArray
-    masses: FloatArray
-    inertias: FloatArray
-    feet: IntArray
-    foot_points: FloatArray
-    foot_radii: FloatArray
-    first_driven: int
-    driven: int
-    pins: PinArrays
-
-    @property
-    def first_flexure(self) -> int:
-        """Row of the first flexure among the cables; how many true cables there are."""
-        return len(self.ends) - len(self.pins.bodies)
-
-
-def cable_arrays(design: RobotDesign) -> CableArrays:
+def robot_model(design: RobotDesign) -> Model:
     """Flatten ``design`` at its standing structure."""
     structure, payload = design.standing, design.payload
     nodes, rods = structure.nodes, structure.rods
@@ -120,31 +87,32 @@ def cable_arrays(design: RobotDesign) -> CableArrays:
         params.append(np.array(springs, dtype=float))
         natural.append(np.zeros(len(pins)))
 
-    bodies = np.zeros((count, 4))
-    bodies[:, rotation.INVERSE_MASS] = 1 / masses
-    bodies[:, rotation.INVERSE_TRANSVERSE] = 1 / inertias[:, 0]
-    bodies[:, rotation.INVERSE_AXIAL] = 1 / inertias[:, 2]
-    bodies[: len(rods), rotation.SPIN_DAMPING] = design.spin_damping
-    partner = np.full(count, -1)
+    body_params = np.zeros((count, 4))
+    body_params[:, INVERSE_MASS] = 1 / masses
+    body_params[:, INVERSE_TRANSVERSE] = 1 / inertias[:, 0]
+    body_params[:, INVERSE_AXIAL] = 1 / inertias[:, 2]
+    body_params[: len(rods), SPIN_DAMPING] = design.spin_damping
+    other_half = np.full(count, -1)
     for first, last in pins:
-        partner[first], partner[last] = last, first
-        bodies[[first, last], rotation.SPIN_DAMPING] = design.spin_damping / 2
-    return CableArrays(
-        ends=np.concatenate(ends),
-        params=np.concatenate(params),
-        natural=np.concatenate(natural),
-        bodies=bodies,
-        rest_poses=poses,
+        other_half[first], other_half[last] = last, first
+        body_params[[first, last], SPIN_DAMPING] = design.spin_damping / 2
+    return Model(
+        spring_bodies=np.concatenate(ends),
+        spring_params=np.concatenate(params),
+        rest_lengths=np.concatenate(natural),
+        first_driven=len(structure.cables),
+        driven_count=len(structure.stiff_cables),
+        drive_params=drive_constants(design.drive),
+        body_params=body_params,
+        other_half=other_half,
         masses=masses,
         inertias=inertias,
-        feet=body_of_node,
-        foot_points=local_of_node,
+        rest_poses=poses,
+        pin_bodies=np.array(pins, dtype=np.int64).reshape(-1, 2),
+        pin_params=np.array(pin_params, dtype=float).reshape(-1, 9),
+        node_bodies=body_of_node,
+        node_points=local_of_node,
         foot_radii=foot_radii,
-        first_driven=len(structure.cables),
-        driven=len(structure.stiff_cables),
-        pins=PinArrays(
-            np.array(pins, dtype=np.int64).reshape(-1, 2), np.array(pin_params, dtype=float).reshape(-1, 9), partner
-        ),
     )
 
 
@@ -164,33 +132,27 @@ def _turn_of_z_onto(axis: FloatArray) -> FloatArray:
     return turn / np.linalg.norm(turn)
 
 
-def explicit_step_limit(arrays: CableArrays) -> float:
+def explicit_step_limit(model: Model) -> float:
     """Largest time step [s] at which explicit forces are stable about rest.
 
     With A = J M^-1 J^T, the stretched-cable modes obey x'' + A C x' + A K x = 0. Symplectic Euler with rates that are
     differenced in time, and so lag half a step, is stable while dt^2 lambda(A K) + 4 dt lambda(A C) < 4 holds for the
     largest eigenvalues; that is sufficient, so a little below the true limit.
     """
-    count = len(arrays.ends)
-    if not count:
+    if not len(model.spring_bodies):
         return np.inf
-    mobility = mobility_at_rest(arrays)
-    stiff = np.sqrt(arrays.params[:, law.STIFFNESS])
-    damp = np.sqrt(arrays.params[:, law.DAMPING])
+    mobility = mobility_at_rest(model)
+    stiff = np.sqrt(model.spring_params[:, STIFFNESS])
+    damp = np.sqrt(model.spring_params[:, DAMPING])
     k = np.linalg.eigvalsh(stiff[:, None] * mobility * stiff)[-1]
     c = np.linalg.eigvalsh(damp[:, None] * mobility * damp)[-1]
     return float((-2 * c + np.sqrt(4 * c * c + 4 * k)) / k)
 
 
-def mobility_at_rest(arrays: CableArrays) -> FloatArray:
-    """A = J M^-1 J^T (c, c) of all rows, the standing robot."""
-    count, flexures = len(arrays.ends), arrays.first_flexure
-    turns, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
-    poses, pins = arrays.rest_poses, arrays.pins
-    cable_geometry(poses, arrays.ends[:flexures], arrays.params, turns, directions, lengths)
-    angles = np.zeros(len(pins.bodies))
-    flexure_geometry(poses, pins.bodies, pins.params, angles, flexures, turns, directions, lengths)
-    mobility = np.empty((count, count))
-    mobility_matrix(poses, arrays.ends, arrays.bodies, pins.partner, pins.bodies, pins.params, turns, directions,
-                           mobility)  # fmt: skip
-    return mobility
+def mobility_at_rest(model: Model) -> FloatArray:
+    """A = J M^-1 J^T (s, s) of all spring rows, the standing robot [1/kg]."""
+    out = new_out(model)
+    spring_geometry(model, model.rest_poses, np.zeros(len(model.pin_bodies)), out, np.empty(len(model.spring_bodies)))
+    split_rod_inertia(model, model.rest_poses, out)
+    mobility_matrix(model, out)
+    return out.mobility

@@ -1,6 +1,6 @@
-"""A leapfrog step of pinned rods (pins.py), without drift.
+"""A leapfrog step of split rods, without drift, compiled.
 
-PyBullet's explicit velocity terms let a multibody's momentum drift, so here, as for whole rods (rotation.py), the
+PyBullet's explicit velocity terms let a multibody's momentum drift, so here, as for whole rods (rod_rotation.py), the
 kernel commands what makes the engine's step come out as leapfrog does. With P(n + 1/2) the momenta of both halves and
 T(n) the motions that the pin allows,
 
@@ -17,26 +17,25 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from .rod_rotation import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE, angular_velocity, dot, turned
-from .split_rods import add_generalised, cross, inertia_times, pinned_inertia
+from .model import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE
+from .split_rods import add_generalised, inertia_times
+from .vectors import KERNEL, angular_velocity, cross, dot, turn
 
 _MOST_ITERATIONS, _TOLERANCE = 20, 1e-12  # changes of a velocity over (1 + the fastest); each is 1e-2 of the last
 
 
-@njit(cache=True)
-def _spin_momentum(body, z, w, half_step, out):
-    """Angular momentum at the half step from the own axis z now."""
-    middle = np.empty(3)
-    middle[:] = turned(z, w, half_step)
+@njit(**KERNEL)
+def _spin_momentum(body, z, w, half_step):
+    """Angular momentum, as three numbers, at the half step from the own axis z now."""
+    middle = turn(z, w, half_step)
     across, along = 1 / body[INVERSE_TRANSVERSE], 1 / body[INVERSE_AXIAL]
     part = (along - across) * dot(w, z)
-    for i in range(3):
-        out[i] = across * w[i] + part * middle[i]
+    return across * w[0] + part * middle[0], across * w[1] + part * middle[1], across * w[2] + part * middle[2]
 
 
-@njit(cache=True)
-def _composed(w, axis, rate, dt, out):
-    """Angular velocity (3,) of a body that is turned by axis * rate * dt first and by w * dt then, in one step dt."""
+@njit(**KERNEL)
+def _composed(w, axis, rate, dt):
+    """Angular velocity, as three numbers, of a body turned by axis * rate * dt first and by w * dt then, in one dt."""
     speed = np.sqrt(dot(w, w))
     s = 0.5 * dt if speed * dt < 1e-12 else np.sin(0.5 * speed * dt) / speed
     x, y, z, q = s * w[0], s * w[1], s * w[2], np.cos(0.5 * speed * dt)
@@ -46,49 +45,46 @@ def _composed(w, axis, rate, dt, out):
     size = np.sqrt(vx * vx + vy * vy + vz * vz)
     real = q * r - x * a - y * b - z * c
     factor = 2 / dt if size < 1e-12 else 2 * np.arctan2(size, real) / (size * dt)
-    out[0], out[1], out[2] = factor * vx, factor * vy, factor * vz
+    return factor * vx, factor * vy, factor * vz
 
 
-@njit(cache=True)
-def step_pinned(poses, last_poses, bodies, pins, params, rates, dt, wrenches):
-    """Replace the wrenches (b, 6) on pinned halves by those that make the engine take a leapfrog step under them: force
-    and moment on the first half, a moment along the pin on the second. rates (p,) of the pins over the last step."""
-    geometry, mass, inverse = np.empty((6, 3)), np.empty((7, 7)), np.empty((7, 7))
+@njit(**KERNEL)
+def step_split_rods(model, state, dt, out):
+    """Replace the wrenches on the halves of split rods by those that make the engine take a leapfrog step under them:
+    force and moment on the first half, a moment along the pin on the second."""
+    params, wrenches, cables = model.body_params, out.wrenches, len(state.rates) - len(state.angles)
     u, old, goal, got = np.empty(7), np.empty(7), np.empty(7), np.empty(7)
-    w2, v, spin, moved, back = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
-    for p in range(len(pins)):
-        one, two = pins[p, 0], pins[p, 1]
-        pinned_inertia(poses, bodies, pins, params, p, geometry, mass, inverse)
+    v, w, bend = np.empty(3), np.empty(3), np.empty(3)
+    for p in range(len(model.pin_bodies)):
+        one, two = model.pin_bodies[p, 0], model.pin_bodies[p, 1]
+        geometry, mass, inverse = out.pin_geometry[p], out.pin_mass[p], out.pin_inverse[p]
         r1, r2, axis, z1, z2, _ = geometry
-        m1, m2 = 1 / bodies[one, INVERSE_MASS], 1 / bodies[two, INVERSE_MASS]
+        m1, m2 = 1 / params[one, INVERSE_MASS], 1 / params[two, INVERSE_MASS]
         # what the momenta are to become along the motions that the pin allows
         goal[:] = 0.0
         for side in range(2):
-            row = pins[p, side]
-            w2[:] = angular_velocity(poses[row], last_poses[row], dt)
-            _spin_momentum(bodies[row], z1 if side == 0 else z2, w2, -0.5 * dt, spin)
+            row = model.pin_bodies[p, side]
+            spin = angular_velocity(state.poses[row], state.last_poses[row], dt)
+            momentum = _spin_momentum(params[row], z1 if side == 0 else z2, spin, -0.5 * dt)
             for i in range(3):
-                v[i] = (poses[row, i] - last_poses[row, i]) / dt
+                v[i] = (state.poses[row, i] - state.last_poses[row, i]) / dt
                 if side == 0:
-                    old[i], old[3 + i] = v[i], w2[i]
-                v[i] = v[i] / bodies[row, INVERSE_MASS] + dt * wrenches[row, i]
-                spin[i] += dt * wrenches[row, 3 + i]
-            add_generalised(geometry, side == 1, v, spin, goal)
-        old[6] = rates[p]
+                    old[i], old[3 + i] = v[i], spin[i]
+                v[i] = v[i] / params[row, INVERSE_MASS] + dt * wrenches[row, i]
+                w[i] = momentum[i] + dt * wrenches[row, 3 + i]
+            add_generalised(geometry, side == 1, v, w, goal)
+        old[6] = state.rates[cables + p]
         u[:] = old
         for _ in range(_MOST_ITERATIONS):
-            _composed(u[3:6], axis, u[6], dt, w2)
-            moved[:] = turned(r1, u[3:6], dt)
-            back[:] = turned(r2, w2, dt)
+            second = _composed(u[3:6], axis, u[6], dt)
+            moved, back = turn(r1, u[3:6], dt), turn(r2, second, dt)
             got[:] = 0.0
             for i in range(3):
                 v[i] = m1 * u[i]
-            _spin_momentum(bodies[one], z1, u[3:6], 0.5 * dt, spin)
-            add_generalised(geometry, False, v, spin, got)
+            add_generalised(geometry, False, v, _spin_momentum(params[one], z1, u[3:6], 0.5 * dt), got)
             for i in range(3):
                 v[i] = m2 * (u[i] + ((moved[i] - r1[i]) - (back[i] - r2[i])) / dt)
-            _spin_momentum(bodies[two], z2, w2, 0.5 * dt, spin)
-            add_generalised(geometry, True, v, spin, got)
+            add_generalised(geometry, True, v, _spin_momentum(params[two], z2, second, 0.5 * dt), got)
             change, fastest = 0.0, 1.0
             for i in range(7):
                 step = 0.0
@@ -99,44 +95,33 @@ def step_pinned(poses, last_poses, bodies, pins, params, rates, dt, wrenches):
                 fastest = max(fastest, abs(u[i]))
             if not change > _TOLERANCE * fastest:
                 break
-        _engine_bias(bodies, one, two, geometry, old, got)
+        _engine_bias(params[one], params[two], geometry, old, got)
         for i in range(7):
             for j in range(7):
                 got[i] += mass[i, j] * (u[j] - old[j]) / dt
         for i in range(3):
+            bend[i] = got[6] * axis[i]
             wrenches[one, i] = got[i]
-            wrenches[one, 3 + i] = got[3 + i] - got[6] * axis[i]
+            wrenches[one, 3 + i] = got[3 + i] - bend[i]
             wrenches[two, i] = 0.0
-            wrenches[two, 3 + i] = got[6] * axis[i]
+            wrenches[two, 3 + i] = bend[i]
 
 
-@njit(cache=True)
-def _engine_bias(bodies, one, two, geometry, u, out):
-    """Velocity terms h (7,) of the rod at velocity u, as the engine takes them: at the old state."""
+@njit(**KERNEL)
+def _engine_bias(one, two, geometry, u, out):
+    """Write the velocity terms h (7,) of the rod at velocity u, as the engine takes them: at the old state. one, two:
+    the halves' parameters (4,)."""
     r1, r2, axis, z1, z2, _ = geometry
-    w1, w2, turning, gone = u[3:6], np.empty(3), np.empty(3), np.empty(3)
-    force, moment, spin = np.empty(3), np.empty(3), np.empty(3)
+    w1 = u[3], u[4], u[5]
+    along = u[6] * axis[0], u[6] * axis[1], u[6] * axis[2]
+    w2 = w1[0] + along[0], w1[1] + along[1], w1[2] + along[2]
+    turning = cross(w1, along)  # angular acceleration of the second half at constant u
     out[:] = 0.0
-    inertia_times(bodies[one], z1, w1, spin)
-    cross(w1, spin, moment)
-    force[:] = 0.0
-    add_generalised(geometry, False, force, moment, out)
-    for i in range(3):
-        w2[i] = w1[i] + u[6] * axis[i]
-        gone[i] = u[6] * axis[i]
-    cross(w1, gone, turning)  # angular acceleration of the second half at constant u
-    cross(w1, r1, spin)
-    cross(w1, spin, force)
-    cross(turning, r2, gone)
-    for i in range(3):
-        force[i] -= gone[i]
-    cross(w2, r2, spin)
-    cross(w2, spin, gone)
-    for i in range(3):
-        force[i] = (force[i] - gone[i]) / bodies[two, INVERSE_MASS]
-    inertia_times(bodies[two], z2, w2, spin)
-    cross(w2, spin, moment)
-    inertia_times(bodies[two], z2, turning, spin)
-    for i in range(3):
-        moment[i] += spin[i]
+    add_generalised(geometry, False, (0.0, 0.0, 0.0), cross(w1, inertia_times(one, z1, w1)), out)
+    to_pin, lag, from_pin = cross(w1, cross(w1, r1)), cross(turning, r2), cross(w2, cross(w2, r2))
+    mass = two[INVERSE_MASS]
+    force = ((to_pin[0] - lag[0] - from_pin[0]) / mass, (to_pin[1] - lag[1] - from_pin[1]) / mass,
+             (to_pin[2] - lag[2] - from_pin[2]) / mass)  # fmt: skip
+    gyroscopic, change = cross(w2, inertia_times(two, z2, w2)), inertia_times(two, z2, turning)
+    moment = gyroscopic[0] + change[0], gyroscopic[1] + change[1], gyroscopic[2] + change[2]
     add_generalised(geometry, True, force, moment, out)

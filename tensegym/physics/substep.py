@@ -1,85 +1,93 @@
-"""The kernel of a substep: from poses to one force and one moment a body, drives and the running account, compiled."""
+"""The kernel of a substep: from poses to one force and one moment a body, drives and the running totals, compiled."""
 
 from __future__ import annotations
 
 import numpy as np
 from numba import njit
 
-from .cable_geometry import cable_geometry, flexure_geometry, points_in_world
-from .cable_law import explicit_tensions, implicit_tensions, wrenches_of
+from .cable_law import explicit_tensions, implicit_tensions, tension_wrenches
 from .drives import CURRENT, PULLED, VOLTAGE, drive_step
+from .geometry import points_in_world, spring_geometry
+from .model import CENTRE_PATH, DRIVE_WORK, ELECTRICAL_ENERGY, FOOT_PATH, FOOT_PATH_SUM
 from .rod_rotation import turn_bodies
-from .split_rod_step import step_pinned
-from .split_rods import second_poses
+from .split_rod_step import step_split_rods
+from .split_rods import second_poses, split_rod_inertia
 from .terrain import distance_to_ground
+from .vectors import KERNEL
 
-# Entries of the running account, all since the last reset
-DRIVE_WORK, ELECTRICAL_ENERGY, CENTRE_PATH, FOOT_PATH, FOOT_PATH_SUM = range(5)
-ACCOUNT_SIZE = 5
 GROUND_TOLERANCE = 1e-3  # m; a foot whose gap to the ground is below this is grounded
 
 
-@njit(cache=True)
-def substep(poses, angles, wrenches, last_poses, ends, cables, bodies, partner, pins, pin_params, natural, lengths,
-            tensions, rates, drive_constants, drives, first_driven, heights, cell, feet, foot_points, foot_radius,
-            foot_positions, masses, account, dt, implicit):  # fmt: skip
-    """One kernel a substep: geometry, tensions, wrenches (b, 6) in world axes about body centres, drives, account.
+@njit(**KERNEL)
+def substep(model, ground, state, out, dt, implicit):
+    """Geometry, tensions, wrenches, drives, totals: ``state`` is updated, ``out`` written; out.wrenches are for the
+    engine.
 
-    Everything after ``pin_params`` and before ``dt``, and ``last_poses``, is state and is updated in place, and so are
-    the poses of second halves; ``wrenches`` is written.
+    model, state, out: see model.py. ground: a terrain.Ground. dt [s]. implicit: which tensions, see cable_law.py.
     """
-    count = len(ends)
-    turns, directions = np.empty((count, 2, 3)), np.empty((count, 3))
-    before = tensions[first_driven : first_driven + len(drives)].copy()
-    rates[:] = lengths
-    second_poses(pins, pin_params, angles, poses)
-    flexures = count - len(pins)
-    cable_geometry(poses, ends[:flexures], cables, turns, directions, lengths)
-    flexure_geometry(poses, pins, pin_params, angles, flexures, turns, directions, lengths)
-    for c in range(count):
-        rates[c] = (lengths[c] - rates[c]) / dt
+    driven, tensions = model.first_driven, state.tensions
+    for d in range(len(state.drives)):
+        out.last_tensions[d] = tensions[driven + d]
+    second_poses(model, state.angles, state.poses)
+    for c in range(len(tensions)):
+        state.rates[c] = state.lengths[c]
+    spring_geometry(model, state.poses, state.angles, out, state.lengths)
+    for c in range(len(tensions)):
+        state.rates[c] = (state.lengths[c] - state.rates[c]) / dt
+    split_rod_inertia(model, state.poses, out)
     if implicit:
-        implicit_tensions(poses, ends, cables, bodies, partner, pins, pin_params, turns, directions, lengths, rates,
-                          natural, dt, tensions)  # fmt: skip
+        implicit_tensions(model, out, state.lengths, state.rates, state.natural, dt, tensions)
     else:
-        explicit_tensions(cables, lengths, rates, natural, tensions)
+        explicit_tensions(model.spring_params, state.lengths, state.rates, state.natural, tensions)
 
-    wrenches_of(ends, turns, directions, tensions, wrenches)
-    turn_bodies(poses, last_poses, bodies, partner, dt, wrenches)
-    if len(pins):
-        step_pinned(poses, last_poses, bodies, pins, pin_params, rates[flexures:], dt, wrenches)
+    tension_wrenches(model.spring_bodies, out, tensions)
+    turn_bodies(model, state, dt, out)
+    step_split_rods(model, state, dt, out)
+    _wind(model, state, out, dt)
+    _add_paths(model, ground, state, out)
+    state.last_poses[:] = state.poses
 
+
+@njit(**KERNEL)
+def reset_springs(model, state, out):
+    """Set lengths, rates and tensions for a state at rest."""
+    spring_geometry(model, state.poses, state.angles, out, state.lengths)
+    state.rates[:] = 0.0
+    explicit_tensions(model.spring_params, state.lengths, state.rates, state.natural, state.tensions)
+
+
+@njit(**KERNEL)
+def _wind(model, state, out, dt):
+    """Advance the drives under their cables' tensions, and add up what they do and take."""
+    totals, drives = state.totals, state.drives
     for d in range(len(drives)):
-        c = first_driven + d
+        c = model.first_driven + d
         # trapezoidal: the pull of the last step was made between the last tension and this one
-        account[DRIVE_WORK] += 0.5 * (before[d] + tensions[c]) * drives[d, PULLED]
-        drive_step(drive_constants, drives[d], tensions[c], dt)
-        natural[c] -= drives[d, PULLED]
-        account[ELECTRICAL_ENERGY] += max(0.0, drives[d, CURRENT] * drives[d, VOLTAGE]) * dt
-
-    _account_feet(poses, last_poses, heights, cell, feet, foot_points, foot_radius, foot_positions, masses, account)
-    last_poses[:] = poses
+        totals[DRIVE_WORK] += 0.5 * (out.last_tensions[d] + state.tensions[c]) * drives[d, PULLED]
+        drive_step(model.drive_params, drives[d], state.tensions[c], dt)
+        state.natural[c] -= drives[d, PULLED]
+        totals[ELECTRICAL_ENERGY] += max(0.0, drives[d, CURRENT] * drives[d, VOLTAGE]) * dt
 
 
-@njit(cache=True)
-def _account_feet(poses, last_poses, heights, cell, feet, foot_points, foot_radius, foot_positions, masses, account):
+@njit(**KERNEL)
+def _add_paths(model, ground, state, out):
     """Add the horizontal paths of the grounded feet's centres (mean and sum over feet) and of the centre of mass."""
-    now = np.empty_like(foot_positions)
-    points_in_world(poses, feet, foot_points, now)
+    now, before, totals = out.new_positions, state.node_positions, state.totals
+    points_in_world(state.poses, out.rotations, model.node_bodies, model.node_points, now)
     grounded, path = 0, 0.0
-    for p in range(len(feet)):
-        limit = foot_radius[p] + GROUND_TOLERANCE
-        height, before = distance_to_ground(now[p], heights, cell), distance_to_ground(foot_positions[p], heights, cell)
-        if height <= limit and before <= limit:
+    for p in range(len(now)):
+        limit = model.foot_radii[p] + GROUND_TOLERANCE
+        if distance_to_ground(now[p], ground) <= limit and distance_to_ground(before[p], ground) <= limit:
             grounded += 1
-            path += np.sqrt((now[p, 0] - foot_positions[p, 0]) ** 2 + (now[p, 1] - foot_positions[p, 1]) ** 2)
-    foot_positions[:] = now
+            path += np.sqrt((now[p, 0] - before[p, 0]) ** 2 + (now[p, 1] - before[p, 1]) ** 2)
+        for i in range(3):
+            before[p, i] = now[p, i]
     if grounded:
-        account[FOOT_PATH] += path / grounded
-        account[FOOT_PATH_SUM] += path
+        totals[FOOT_PATH] += path / grounded
+        totals[FOOT_PATH_SUM] += path
     dx, dy, total = 0.0, 0.0, 0.0
-    for b in range(len(poses)):
-        total += masses[b]
-        dx += masses[b] * (poses[b, 0] - last_poses[b, 0])
-        dy += masses[b] * (poses[b, 1] - last_poses[b, 1])
-    account[CENTRE_PATH] += np.sqrt(dx * dx + dy * dy) / total
+    for b in range(len(model.masses)):
+        total += model.masses[b]
+        dx += model.masses[b] * (state.poses[b, 0] - state.last_poses[b, 0])
+        dy += model.masses[b] * (state.poses[b, 1] - state.last_poses[b, 1])
+    totals[CENTRE_PATH] += np.sqrt(dx * dx + dy * dy) / total

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -11,6 +12,8 @@ from scipy.ndimage import gaussian_filter
 from tensegym.arrays import FloatArray
 from tensegym.design.parameters import Checked, bounded
 from tensegym.errors import DesignError
+
+from .vectors import KERNEL
 
 CELLS_PER_LENGTH = 4  # grid cells a correlation length
 MOST_CELLS = 1000  # from the middle to an edge; the engine then holds four million heights
@@ -58,17 +61,31 @@ class Terrain(Checked):
         return self.roughness / bumps.std() * bumps * share**2 * (3 - 2 * share)
 
 
-FLAT = np.zeros((0, 0))  # in place of heights: the plane z = 0
+class Ground(NamedTuple):
+    """Heights over the world's x and y, the origin in the middle."""
+
+    heights: FloatArray
+    """(n, n) [m] over x (rows) and y; (0, 0) for the plane z = 0."""
+    cell: float
+    """Spacing of the grid [m]."""
+
+    @property
+    def rough(self) -> bool:
+        """Whether it is other than a plane."""
+        return len(self.heights) > 0
 
 
-@njit(cache=True)
-def distance_to_ground(point, heights, cell):
+FLAT = Ground(np.zeros((0, 0)), 1.0)
+
+
+@njit(**KERNEL)
+def distance_to_ground(point, ground):
     """Signed distance [m] of a point (3,) to the ground, below it negative; nan beyond its edges.
 
-    The ground is the plane z = 0 where ``heights`` is empty. Else it is what the engine makes of a grid: two triangles
-    a cell, which meet in the diagonal from (0, 1) to (1, 0). The distance is that to the plane of the triangle above
-    or below the point.
+    Where it is no plane it is what the engine makes of a grid: two triangles a cell, which meet in the diagonal from
+    (0, 1) to (1, 0). The distance is that to the plane of the triangle above or below the point.
     """
+    heights, cell = ground.heights, ground.cell
     if not len(heights):
         return point[2]
     last = len(heights) - 1
@@ -85,10 +102,10 @@ def distance_to_ground(point, heights, cell):
     return (point[2] - (corner + du * u + dv * v)) / np.sqrt(1 + (du * du + dv * dv) / (cell * cell))
 
 
-@njit(cache=True)
-def distances_to_ground(points, heights, cell):
-    """Those of points (p, 3): (p,) [m]."""
+@njit(**KERNEL)
+def distances_to_ground(points, ground):
+    """Those of points (k, 3): (k,) [m]."""
     out = np.empty(len(points))
     for p in range(len(points)):
-        out[p] = distance_to_ground(points[p], heights, cell)
+        out[p] = distance_to_ground(points[p], ground)
     return out

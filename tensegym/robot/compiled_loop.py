@@ -9,22 +9,22 @@ from numba import njit
 
 from tensegym.bullet.c_interface import client_handle, push_and_step, read_states
 from tensegym.physics.substep import substep
+from tensegym.physics.vectors import KERNEL
 
 
-@njit(cache=True)
-def run(count, client, total, window, bodies, pinned, poses, angles, wrenches, *arguments):
-    """Take ``count`` time steps of a DIRECT client that holds ``total`` bodies; returns how many were taken.
+@njit(**KERNEL)
+def run(count, engine, model, ground, state, out, dt, implicit):
+    """Take ``count`` time steps of a DIRECT client; returns how many were taken.
 
-    window as `state_window` finds it; bodies (b,) are their numbers, pinned (p,) rows of those with two links;
-    ``arguments`` are the kernel's after ``wrenches``. Fewer steps than asked for mean that the client, or a body in it,
-    is gone.
+    engine: what `World.hand_over` gives; the rest as for `substep`. Fewer steps than asked for mean that the client,
+    or a body in it, is gone.
     """
-    handle = client_handle(client, total)
+    handle = client_handle(engine.client, engine.body_count)
     if handle == 0:
         return 0
     for done in range(count):
-        if not read_states(handle, window, bodies, pinned, poses, angles):
+        if not read_states(handle, engine.window, engine.body_ids, engine.two_link_rows, state.poses, state.angles):
             return done
-        substep(poses, angles, wrenches, *arguments)
-        push_and_step(handle, bodies, pinned, poses, wrenches)
+        substep(model, ground, state, out, dt, implicit)
+        push_and_step(handle, engine.body_ids, engine.two_link_rows, state.poses, out.wrenches)
     return count

@@ -81,7 +81,7 @@ class GaitMeter:
         self._weight, self._length = robot.design.mass * robot.design.gravity, robot.design.length
         self._start = robot.centre_of_mass_in_world()
         self._start_time = robot.time
-        self._start_account = robot.account()
+        self._start_totals = robot.totals()
         self._start_energy = robot.energies().total
         self._excess = 0.0
         self.tips = 0
@@ -97,12 +97,12 @@ class GaitMeter:
         face = self._face(nodes, robot.centre_of_mass_in_world())
         self.tips += face != self.face
         self.face = face
-        allowed = self._start_energy + robot.account().drive_work - self._start_account.drive_work
+        allowed = self._start_energy + robot.totals().drive_work - self._start_totals.drive_work
         self._excess = max(self._excess, robot.energies(velocities).total / allowed - 1)
 
     def metrics(self) -> GaitMetrics:
         """The trial so far."""
-        robot, start, now = self.robot, self._start_account, self.robot.account()
+        robot, start, now = self.robot, self._start_totals, self.robot.totals()
         duration = max(robot.time - self._start_time, robot.dt)
         along = float(self.direction @ (robot.centre_of_mass_in_world() - self._start)[:2])
         path = max(now.centre_path - start.centre_path, 1e-9)

@@ -1,6 +1,6 @@
 """Free modes of a whole design: what the force law itself does about the standing robot.
 
-Coordinates are those of the bodies: six of a whole one, seven of a split rod (pins.py). Stiffness is the change of the
+Coordinates are those of the bodies: six of a whole one, seven of a split rod. Stiffness is the change of the
 generalised forces, differenced about rest, so prestress, attachment radius, flexures and payload are in it; stiff
 cables, slack at rest, are left out, and so is all damping. `modes.free_modes` is the closed form for plain rods.
 """
@@ -11,12 +11,13 @@ import numpy as np
 from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
 
-from tensegym.arrays import FloatArray
+from tensegym.arrays import FloatArray, IntArray
 from tensegym.design.design import RobotDesign
-from tensegym.physics.cable_geometry import cable_geometry, flexure_geometry, points_in_world
-from tensegym.physics.cable_law import explicit_tensions, wrenches_of
-from tensegym.physics.robot_arrays import CableArrays, cable_arrays
-from tensegym.physics.split_rods import add_generalised, pinned_inertia, second_poses
+from tensegym.physics.cable_law import explicit_tensions, tension_wrenches
+from tensegym.physics.geometry import points_at, spring_geometry
+from tensegym.physics.model import Model, Out, new_out
+from tensegym.physics.robot_arrays import robot_model
+from tensegym.physics.split_rods import add_generalised, second_poses, split_rod_inertia
 from tensegym.structure.modes import Modes
 
 STEP = 1e-5  # m and rad, of the differences: their error is of its square
@@ -28,25 +29,26 @@ def design_modes(design: RobotDesign) -> Modes:
     Frequencies of motions that nothing holds, such as the spin of rods whose cables end on the axis, are 0. An unstable
     motion shows as NaN.
     """
-    arrays = cable_arrays(design)
-    first = _columns(arrays)
+    model = robot_model(design)
+    out = new_out(model)
+    first = _columns(model)
     size = int(first[-1])
     mass, stiffness = np.zeros((size, size)), np.empty((size, size))
-    points = np.empty((size, len(arrays.feet), 3))
+    points = np.empty((size, len(model.node_bodies), 3))
     for body, column in enumerate(first[:-1]):
-        if arrays.pins.partner[body] < 0:
-            turn = Rotation.from_quat(arrays.rest_poses[body, 3:]).as_matrix()
-            mass[column : column + 3, column : column + 3] = arrays.masses[body] * np.eye(3)
-            mass[column + 3 : column + 6, column + 3 : column + 6] = (turn * arrays.inertias[body]) @ turn.T
-    for pin, (body, _) in enumerate(arrays.pins.bodies):
-        _, own = _pinned(arrays, arrays.rest_poses, pin)
+        if model.other_half[body] < 0:
+            turn = Rotation.from_quat(model.rest_poses[body, 3:]).as_matrix()
+            mass[column : column + 3, column : column + 3] = model.masses[body] * np.eye(3)
+            mass[column + 3 : column + 6, column + 3 : column + 6] = (turn * model.inertias[body]) @ turn.T
+    split_rod_inertia(model, model.rest_poses, out)
+    for (body, _), own in zip(model.pin_bodies, out.pin_mass, strict=True):
         mass[first[body] : first[body] + 7, first[body] : first[body] + 7] = own
     for column in range(size):
         sides = []
         for sign in (-1, 1):
             q = np.zeros(size)
             q[column] = sign * STEP
-            sides.append(_forces_and_nodes(arrays, first, q))
+            sides.append(_forces_and_nodes(model, out, first, q))
         stiffness[:, column] = -(sides[1][0] - sides[0][0]) / (2 * STEP)
         points[column] = (sides[1][1] - sides[0][1]) / (2 * STEP)
     values, vectors = eigh((stiffness + stiffness.T) / 2, mass)
@@ -58,48 +60,36 @@ def design_modes(design: RobotDesign) -> Modes:
     return Modes(frequencies, np.einsum("cni,ck->kni", points, vectors[:, rest]))
 
 
-def _columns(arrays: CableArrays) -> np.ndarray:
+def _columns(model: Model) -> IntArray:
     """(b + 1,) first coordinate of every body, and their count; a second half has its first half's."""
-    sizes = np.where(arrays.pins.partner < 0, 6, 7)
-    sizes[arrays.pins.bodies[:, 1]] = 0
+    sizes = np.where(model.other_half < 0, 6, 7)
+    sizes[model.pin_bodies[:, 1]] = 0
     return np.concatenate([[0], np.cumsum(sizes)])
 
 
-def _pinned(arrays: CableArrays, poses: FloatArray, pin: int) -> tuple[FloatArray, FloatArray]:
-    """Geometry and mass matrix of a split rod (pins.pinned_inertia)."""
-    geometry, mass, inverse = np.empty((6, 3)), np.empty((7, 7)), np.empty((7, 7))
-    pinned_inertia(poses, arrays.bodies, arrays.pins.bodies, arrays.pins.params, pin, geometry, mass, inverse)
-    return geometry, mass
-
-
-def _forces_and_nodes(arrays: CableArrays, first: np.ndarray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _forces_and_nodes(model: Model, out: Out, first: IntArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Generalised forces and node positions at coordinates q from rest."""
-    poses, pins, flexures = arrays.rest_poses.copy(), arrays.pins, arrays.first_flexure
-    seconds = set(pins.bodies[:, 1].tolist())
+    poses, pins = model.rest_poses.copy(), model.pin_bodies
+    seconds = set(pins[:, 1].tolist())
     for body in range(len(poses)):
         if body not in seconds:
             own = q[first[body] :]
             poses[body, :3] += own[:3]
             poses[body, 3:] = (Rotation.from_rotvec(own[3:6]) * Rotation.from_quat(poses[body, 3:])).as_quat()
-    angles = q[first[pins.bodies[:, 0]] + 6] if len(pins.bodies) else np.zeros(0)
-    second_poses(pins.bodies, pins.params, angles, poses)
-    turns, directions = np.empty((len(arrays.ends), 2, 3)), np.empty((len(arrays.ends), 3))
-    lengths, tensions = np.empty(len(arrays.ends)), np.empty(len(arrays.ends))
-    cable_geometry(poses, arrays.ends[:flexures], arrays.params, turns, directions, lengths)
-    flexure_geometry(poses, pins.bodies, pins.params, angles, flexures, turns, directions, lengths)
-    explicit_tensions(arrays.params, lengths, np.zeros_like(lengths), arrays.natural, tensions)
-    tensions[arrays.first_driven : arrays.first_driven + arrays.driven] = 0.0
-    wrenches = np.zeros((len(poses), 6))
-    wrenches_of(arrays.ends, turns, directions, tensions, wrenches)
+    angles = q[first[pins[:, 0]] + 6] if len(pins) else np.zeros(0)
+    second_poses(model, angles, poses)
+    lengths, tensions = np.empty((2, len(model.spring_bodies)))
+    spring_geometry(model, poses, angles, out, lengths)
+    explicit_tensions(model.spring_params, lengths, np.zeros_like(lengths), model.rest_lengths, tensions)
+    tensions[model.driven] = 0.0
+    tension_wrenches(model.spring_bodies, out, tensions)
+    split_rod_inertia(model, poses, out)
     forces = np.zeros(len(q))
     for body, column in enumerate(first[:-1]):
-        if pins.partner[body] < 0:
-            forces[column : column + 6] = wrenches[body]
-    for pin, (one, two) in enumerate(pins.bodies):
-        geometry, _ = _pinned(arrays, poses, pin)
+        if model.other_half[body] < 0:
+            forces[column : column + 6] = out.wrenches[body]
+    for (one, two), geometry in zip(pins, out.pin_geometry, strict=True):
         own = forces[first[one] : first[one] + 7]
-        add_generalised(geometry, False, wrenches[one, :3], wrenches[one, 3:], own)
-        add_generalised(geometry, True, wrenches[two, :3], wrenches[two, 3:], own)
-    nodes = np.empty((len(arrays.feet), 3))
-    points_in_world(poses, arrays.feet, arrays.foot_points, nodes)
-    return forces, nodes
+        for second, wrench in enumerate((out.wrenches[one], out.wrenches[two])):
+            add_generalised(geometry, second == 1, wrench[:3], wrench[3:], own)
+    return forces, points_at(poses, model.node_bodies, model.node_points)

@@ -12,9 +12,8 @@ from tensegym.arrays import FloatArray
 from tensegym.bullet import World, packaged_urdf
 from tensegym.design.design import RobotDesign
 from tensegym.design.urdf_writer import rod_files, urdf_files
-from tensegym.physics.cable_geometry import points_in_world
-from tensegym.physics.robot_arrays import CableArrays
-from tensegym.physics.split_rods import AXIS
+from tensegym.physics.geometry import points_at
+from tensegym.physics.model import PIN_AXIS, Model
 
 
 def load_bodies(world: World, design: RobotDesign, poses: FloatArray) -> None:
@@ -34,34 +33,32 @@ def load_bodies(world: World, design: RobotDesign, poses: FloatArray) -> None:
             world.load(paths[name], [pose[0], pose[1], pose[2] + 10, *pose[3:]], design.friction)
 
 
-def reach(cables: CableArrays) -> float:
+def reach(model: Model) -> float:
     """How far any foot reaches from the centre of mass at rest [m]."""
-    feet = _feet(cables, cables.rest_poses)
-    return float((np.linalg.norm(feet - _centre(cables), axis=1) + cables.foot_radii).max())
+    feet = _feet(model, model.rest_poses)
+    return float((np.linalg.norm(feet - _centre(model), axis=1) + model.foot_radii).max())
 
 
-def placed(cables: CableArrays, rotation: Rotation) -> FloatArray:
+def placed(model: Model, rotation: Rotation) -> FloatArray:
     """(b, 7) poses of the standing robot rotated about its centre of mass, which is above the origin, the lowest foot
     touching z = 0."""
-    poses = cables.rest_poses.copy()
-    poses[:, :3] = rotation.apply(poses[:, :3] - _centre(cables))
+    poses = model.rest_poses.copy()
+    poses[:, :3] = rotation.apply(poses[:, :3] - _centre(model))
     poses[:, 3:] = (rotation * Rotation.from_quat(poses[:, 3:])).as_quat()
-    poses[:, 2] -= (_feet(cables, poses)[:, 2] - cables.foot_radii).min()
+    poses[:, 2] -= (_feet(model, poses)[:, 2] - model.foot_radii).min()
     return poses
 
 
-def pin_rates(cables: CableArrays, rotation: Rotation, velocities: FloatArray) -> FloatArray:
+def pin_rates(model: Model, rotation: Rotation, velocities: FloatArray) -> FloatArray:
     """(p,) rates [rad/s] of the pins of the standing robot, so rotated, under the bodies' velocities (b, 6)."""
-    pins = cables.pins
-    axes = rotation.apply(Rotation.from_quat(cables.rest_poses[pins.bodies[:, 0], 3:]).apply(pins.params[:, AXIS]))
-    return ((velocities[pins.bodies[:, 1], 3:] - velocities[pins.bodies[:, 0], 3:]) * axes).sum(axis=1)
+    first, second = model.pin_bodies.T
+    axes = rotation.apply(Rotation.from_quat(model.rest_poses[first, 3:]).apply(model.pin_params[:, PIN_AXIS]))
+    return ((velocities[second, 3:] - velocities[first, 3:]) * axes).sum(axis=1)
 
 
-def _centre(cables: CableArrays) -> FloatArray:
-    return cables.masses @ cables.rest_poses[:, :3] / cables.masses.sum()
+def _centre(model: Model) -> FloatArray:
+    return model.masses @ model.rest_poses[:, :3] / model.masses.sum()
 
 
-def _feet(cables: CableArrays, poses: FloatArray) -> FloatArray:
-    feet = np.empty((len(cables.feet), 3))
-    points_in_world(poses, cables.feet, cables.foot_points, feet)
-    return feet
+def _feet(model: Model, poses: FloatArray) -> FloatArray:
+    return points_at(poses, model.node_bodies, model.node_points)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tensegym.arrays import FloatArray
-from tensegym.physics.cable_geometry import points_in_world
+from tensegym.physics.geometry import points_at
 
 from .robot import TensegrityRobot
 
@@ -27,10 +27,8 @@ def tension_colour(tension: float) -> tuple[int, int, int]:
 def cable_ends_in_world(robot: TensegrityRobot) -> FloatArray:
     """(c, 2, 3) end points of every cable [m], now."""
     count = len(robot.lengths)
-    ends, points = robot.cables.ends[:count].ravel(), robot.cables.params[:count, :6].reshape(-1, 3)
-    out = np.empty((2 * count, 3))
-    points_in_world(robot.poses_in_world, ends, points, out)
-    return out.reshape(count, 2, 3)
+    bodies, points = robot.model.spring_bodies[:count].ravel(), robot.model.spring_params[:count, :6].reshape(-1, 3)
+    return points_at(robot.poses_in_world, bodies, points).reshape(count, 2, 3)
 
 
 def render(robot: TensegrityRobot, width: int = 480, height: int = 360, yaw: float = 0.8) -> NDArray[np.uint8]:
@@ -43,7 +41,7 @@ def render(robot: TensegrityRobot, width: int = 480, height: int = 360, yaw: flo
     image = rgb.copy()
     ends = cable_ends_in_world(robot)
     pixels = _project(ends.reshape(-1, 3), clip, width, height).reshape(-1, 2, 2)
-    driven = range(robot.cables.first_driven, robot.cables.first_driven + len(robot.drives))
+    driven = range(*robot.model.driven.indices(len(robot.tensions)))
     for row in np.argsort(robot.tensions):
         thickness = 2 if row in driven else 1
         _line(image, pixels[row, 0], pixels[row, 1], tension_colour(robot.tensions[row]), thickness)

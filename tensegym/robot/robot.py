@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import TracebackType
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,13 +13,10 @@ from tensegym.arrays import FloatArray
 from tensegym.bullet import World
 from tensegym.design.design import RobotDesign
 from tensegym.errors import DesignError, SimulationError
-from tensegym.physics import drives as drive_kernel
 from tensegym.physics import substep as kernel
-from tensegym.physics.cable_geometry import points_in_world
-from tensegym.physics.cable_law import start
-from tensegym.physics.robot_arrays import cable_arrays, explicit_step_limit
-from tensegym.physics.rod_rotation import step_back
-from tensegym.physics.terrain import FLAT, Terrain, distances_to_ground
+from tensegym.physics.drives import COMMAND
+from tensegym.physics.robot_arrays import explicit_step_limit, robot_model
+from tensegym.physics.terrain import FLAT, Ground, Terrain
 from tensegym.structure.faces import resting_rotation
 
 from .compiled_loop import run
@@ -50,36 +47,22 @@ class TensegrityRobot(RobotState):
         design = design or RobotDesign()
         if not LEAST_TIME_STEP <= dt <= LARGEST_TIME_STEP:
             raise DesignError(f"dt = {dt!r} is outside [{LEAST_TIME_STEP:g}, {LARGEST_TIME_STEP:g}] s")
-        cables = cable_arrays(design)
-        limit = explicit_step_limit(cables)
+        model = robot_model(design)
+        limit = explicit_step_limit(model)
         if integrator == "explicit" and dt > limit:
             raise DesignError(f"dt = {dt:g} s is over the explicit limit of {limit:.3g} s; take integrator='implicit'")
         self.implicit = integrator == "implicit" or (integrator == "auto" and dt > limit)
 
-        heights, cell = FLAT, 1.0
+        surface = FLAT
         if isinstance(ground, Terrain):
-            heights, cell = ground.heights(reach(cables)), ground.cell
+            surface = Ground(ground.heights(reach(model)), ground.cell)
         world = World(dt, design.gravity if ground else 0.0, gui, compiled)
-        load_bodies(world, design, cables.rest_poses)
+        load_bodies(world, design, model.rest_poses)
         if ground:
-            world.add_ground(design.friction, heights, cell)
+            world.add_ground(design.friction, surface.heights, surface.cell)
         self._pristine = world.save()
-        super().__init__(design, cables, world, dt, heights, cell)
-        self._wrenches = np.zeros((len(world.poses), 6))
-        self._drive_constants = drive_kernel.drive_constants(design.drive)
-        self._kernel_arguments = self._flat()
+        super().__init__(design, model, surface, world, dt)
         self.reset()
-
-    def _flat(self) -> tuple[Any, ...]:
-        """What the force kernel takes after the wrenches, in its order: arrays that keep their place."""
-        cables, pins = self.cables, self.cables.pins
-        lengths, rates, tensions, natural = self._springs
-        return (
-            self._last_poses, cables.ends, cables.params, cables.bodies, pins.partner, pins.bodies, pins.params,
-            natural, lengths, tensions, rates, self._drive_constants, self.drives, cables.first_driven, self._heights,
-            self._cell, cables.feet, cables.foot_points, cables.foot_radii, self._foot_positions, cables.masses,
-            self._account, self.dt, self.implicit,
-        )  # fmt: skip
 
     def close(self) -> None:
         self.world.close()
@@ -112,30 +95,17 @@ class TensegrityRobot(RobotState):
         velocities (b, 6): linear [m/s] and angular [rad/s] of every body, halves as their pin allows; at rest by
         default.
         """
-        cables, pins = self.cables, self.cables.pins
-        poses = placed(cables, rotation)
+        poses = placed(self.model, rotation)
         moving = np.zeros((len(poses), 6)) if velocities is None else velocities
-        rates = pin_rates(cables, rotation, moving)
-        first = len(self.world.bodies)
+        rates = pin_rates(self.model, rotation, moving)
         self.world.restore(self._pristine)
-        self.world.place(poses[:first], moving[:first], rates=rates)
-        self.drives[:] = 0.0
-        self._springs[:] = 0.0
-        self._springs[3] = cables.natural
-        self._account[:] = 0.0
-        self.time = 0.0
-        poses = self.poses_in_world
-        self._last_poses[:] = poses
-        if velocities is not None:
-            step_back(self._last_poses, velocities, self.dt)
-        points_in_world(poses, cables.feet, cables.foot_points, self._foot_positions)
-        start(poses, self.world.angles, cables.ends, cables.params, pins.bodies, pins.params, self._springs)
-        self._springs[0, cables.first_flexure :] -= self.dt * rates  # the rates are those over the last step
+        self.world.place(poses, moving, rates=rates)
+        self._restart(rates, velocities)
 
     def push(self, velocity: ArrayLike) -> None:
         """Add a velocity (3,) [m/s] to the whole robot, a disturbance that no cable notices."""
         self.world.push(velocity)
-        self._last_poses[:, :3] -= self.dt * np.asarray(velocity)
+        self._shift_velocity(np.asarray(velocity))
 
     def slope(self, angle: float, uphill: FloatArray) -> None:
         """Tilt gravity as on a plane that rises by ``angle`` [rad] towards ``uphill``, a horizontal unit vector (2,).
@@ -150,38 +120,37 @@ class TensegrityRobot(RobotState):
 
     def command(self, angles: FloatArray) -> None:
         """Set the commanded spool angles (w,) [rad]; 0 leaves a stiff cable just slack at rest, more winds it in."""
-        self.drives[:, drive_kernel.COMMAND] = angles
+        self.drives[:, COMMAND] = angles
 
     def step(self, substeps: int = 1) -> None:
         """Advance by ``substeps`` time steps. Raises SimulationError when the simulation has diverged."""
-        if len(self._heights):
-            with self.world.fine_contacts():
-                self._advance(substeps)
-        else:
+        with self.world.stepping():
             self._advance(substeps)
         self.time += substeps * self.dt
-        if len(self._heights):
+        if self._ground.rough:
             self._check_ground()
         fastest = np.abs(self.rates).max(initial=0.0)
         if not fastest < SPEED_BOUND:
             raise SimulationError(f"diverged at t = {self.time:.4g} s: a cable changes length at {fastest:.3g} m/s")
 
     def _advance(self, substeps: int) -> None:
-        world, wrenches, arguments = self.world, self._wrenches, self._kernel_arguments
+        world, arguments = self.world, (self.model, self._ground, self._state, self._out, self.dt, self.implicit)
         if world.compiled:
             for first in range(0, substeps, _MOST_AT_ONCE):
                 count = min(substeps - first, _MOST_AT_ONCE)
-                if run(count, *world.engine, wrenches, *arguments) < count:
+                if run(count, world.hand_over(), *arguments) < count:
                     raise SimulationError("the robot's world is closed, or a body is gone from it")
         else:
             for _ in range(substeps):
-                kernel.substep(*world.read(), wrenches, *arguments)
-                world.step(wrenches)
+                world.read()
+                kernel.substep(*arguments)
+                world.step(self._out.wrenches)
 
     def _check_ground(self) -> None:
         """Raise SimulationError for a foot that is lost: other than a plane, bumps have an edge, and an underside."""
-        heights = distances_to_ground(self._foot_positions, self._heights, self._cell)
-        if not (heights >= -self.cables.foot_radii).all():
-            foot = int((~(heights >= -self.cables.foot_radii)).argmax())
+        heights = self.heights_of(self._state.node_positions)
+        lost = ~(heights >= -self.model.foot_radii)
+        if lost.any():
+            foot = int(lost.argmax())
             where = "over the edge of" if np.isnan(heights[foot]) else "through"
             raise SimulationError(f"foot {foot + 1} went {where} the ground by t = {self.time:.4g} s")

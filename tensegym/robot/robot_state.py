@@ -9,47 +9,60 @@ import numpy as np
 from tensegym.arrays import FloatArray
 from tensegym.bullet import World
 from tensegym.design.design import RobotDesign
-from tensegym.physics import drives as drive_kernel
-from tensegym.physics import substep as kernel
-from tensegym.physics.cable_geometry import points_in_world
-from tensegym.physics.cable_law import STIFFNESS
+from tensegym.physics.geometry import points_at
+from tensegym.physics.model import STIFFNESS, Model, new_out, new_state
 from tensegym.physics.readings import (
-    Account,
     Energies,
+    Totals,
     mechanical_energy,
     momentum,
     nodes_in_world,
+    step_back,
     velocities_between,
 )
-from tensegym.physics.robot_arrays import CableArrays
 from tensegym.physics.split_rods import second_poses
-from tensegym.physics.terrain import distances_to_ground
+from tensegym.physics.substep import GROUND_TOLERANCE, reset_springs
+from tensegym.physics.terrain import Ground, distances_to_ground
 from tensegym.structure.faces import Faces, hull_faces
 
 
 class RobotState:
-    """A design's bodies in a world, with the arrays that its substeps write. Nothing here changes them.
+    """A design's bodies in a world and the arrays of its substeps, which nothing else writes to.
 
     Rows of per-body arrays are the rods in their order (of split rods the first halves), then the payload, then the
     second halves. Rows of per-cable arrays are the elastic cables, the stiff cables, the payload's cables.
     """
 
-    def __init__(
-        self, design: RobotDesign, cables: CableArrays, world: World, dt: float, heights: FloatArray, cell: float
-    ) -> None:
-        self.design, self.cables, self.world, self.dt = design, cables, world, dt
+    def __init__(self, design: RobotDesign, model: Model, ground: Ground, world: World, dt: float) -> None:
+        self.design, self.model, self.world, self.dt = design, model, world, dt
         self.gravity = np.array([0.0, 0.0, -design.gravity if world.ground is not None else 0.0])
-        self._heights, self._cell = heights, cell
-        self.drives = np.zeros((cables.driven, drive_kernel.STATE_SIZE))
-        self._springs = np.zeros((4, len(cables.ends)))
-        self._springs[3] = cables.natural
-        true = cables.first_flexure
-        self.lengths, self.rates, self.tensions, self.natural_lengths = self._springs[:, :true]
-        self.flexure_moments = self._springs[2, true:]
-        self._last_poses = np.zeros_like(world.poses)
-        self._foot_positions = np.zeros((len(cables.feet), 3))
-        self._account = np.zeros(kernel.ACCOUNT_SIZE)
         self.time = 0.0
+        self._ground, self._out = ground, new_out(model)
+        self._state = state = new_state(model, world.poses, world.angles)
+        cables = model.first_flexure
+        self.drives = state.drives
+        self.lengths, self.rates = state.lengths[:cables], state.rates[:cables]
+        self.tensions, self.natural_lengths = state.tensions[:cables], state.natural[:cables]
+        self.flexure_moments = state.tensions[cables:]
+
+    def _restart(self, pin_rates: FloatArray, velocities: FloatArray | None) -> None:
+        """Time and totals zero, drives and cables as at rest, where the bodies stand now.
+
+        pin_rates (p,) [rad/s]; velocities (b, 6) of the bodies, None at rest.
+        """
+        state = self._state
+        state.natural[:] = self.model.rest_lengths
+        state.drives[:], state.totals[:], self.time = 0.0, 0.0, 0.0
+        state.last_poses[:] = self.poses_in_world
+        if velocities is not None:
+            step_back(state.last_poses, velocities, self.dt)
+        state.node_positions[:] = self.node_positions_in_world()
+        reset_springs(self.model, state, self._out)
+        state.lengths[self.model.first_flexure :] -= self.dt * pin_rates  # the rates are those over the last step
+
+    def _shift_velocity(self, velocity: FloatArray) -> None:
+        """Let the last step have ended with a velocity (3,) [m/s] more, of the whole robot."""
+        self._state.last_poses[:, :3] -= self.dt * velocity
 
     @cached_property
     def faces(self) -> Faces:
@@ -67,7 +80,7 @@ class RobotState:
         """(b, 7) position [m] and quaternion xyzw of every body, now."""
         poses, angles = self.world.read()
         if len(angles):
-            second_poses(self.cables.pins.bodies, self.cables.pins.params, angles, poses)
+            second_poses(self.model, angles, poses)
         return poses
 
     def velocities_in_world(self) -> FloatArray:
@@ -75,39 +88,35 @@ class RobotState:
 
         The engine's velocities live half a step before its poses, as in the leapfrog scheme, and so do these.
         """
-        return velocities_between(self._last_poses, self.poses_in_world, self.dt)
+        return velocities_between(self._state.last_poses, self.poses_in_world, self.dt)
 
     def node_positions_in_world(self) -> FloatArray:
         """(n, 3) [m], now."""
-        out = np.empty_like(self._foot_positions)
-        points_in_world(self.poses_in_world, self.cables.feet, self.cables.foot_points, out)
-        return out
+        return points_at(self.poses_in_world, self.model.node_bodies, self.model.node_points)
 
     def nodes_in_world(self, velocities: FloatArray | None = None) -> tuple[FloatArray, FloatArray]:
         """Positions (n, 3) [m] and velocities (n, 3) [m/s], now; pass ``velocities`` (b, 6) when read already."""
         v = self.velocities_in_world() if velocities is None else velocities
-        return nodes_in_world(self.poses_in_world, v, self.cables.feet, self.cables.foot_points)
+        return nodes_in_world(self.poses_in_world, v, self.model.node_bodies, self.model.node_points)
 
     def centre_of_mass_in_world(self) -> FloatArray:
         """(3,) [m], now."""
-        return self.cables.masses @ self.poses_in_world[:, :3] / self.cables.masses.sum()
+        return self.model.masses @ self.poses_in_world[:, :3] / self.model.masses.sum()
 
     def momentum_in_world(self) -> tuple[FloatArray, FloatArray]:
         """Linear [kg m/s] and angular [kg m^2/s] momentum about the world origin, each (3,), half a step ago."""
-        return momentum(
-            self.poses_in_world, self.velocities_in_world(), self.cables.masses, self.cables.inertias, self.dt
-        )
+        model = self.model
+        return momentum(self.poses_in_world, self.velocities_in_world(), model.masses, model.inertias, self.dt)
 
     def energies(self, velocities: FloatArray | None = None) -> Energies:
         """Kinetic, gravity and elastic energy, flexures' in it, now; pass ``velocities`` (b, 6) when read already."""
-        cables = self.cables
+        model, cables = self.model, self.model.first_flexure
         v = self.velocities_in_world() if velocities is None else velocities
-        flexures = cables.first_flexure
         kinetic, potential, elastic = mechanical_energy(
-            self.poses_in_world, v, cables.masses, cables.inertias, -self.gravity[2], cables.ends[:flexures],
-            cables.params, self.natural_lengths,
+            self.poses_in_world, v, model.masses, model.inertias, -self.gravity[2], model.spring_bodies[:cables],
+            model.spring_params, self.natural_lengths,
         )  # fmt: skip
-        potential -= float(cables.masses @ self.poses_in_world[:, :2] @ self.gravity[:2])
+        potential -= float(model.masses @ self.poses_in_world[:, :2] @ self.gravity[:2])
         return Energies(kinetic, potential, elastic + self.flexure_energy())
 
     @property
@@ -124,16 +133,20 @@ class RobotState:
         """Energy stored in the flexures of split rods [J], now."""
         if not len(self.flexure_moments):
             return 0.0
-        stiffness = self.cables.params[self.cables.first_flexure :, STIFFNESS]
+        stiffness = self.model.spring_params[self.model.first_flexure :, STIFFNESS]
         return float(0.5 * stiffness @ self.flexure_angles**2)
 
-    def account(self) -> Account:
-        """Running totals since the last reset."""
-        return Account(*self._account.tolist())
+    def totals(self) -> Totals:
+        """What has added up since the last reset."""
+        return Totals(*self._state.totals.tolist())
+
+    def heights_of(self, points: FloatArray) -> FloatArray:
+        """(k,) signed distance [m] of points (k, 3) to the ground; nan beyond its edges."""
+        return distances_to_ground(points, self._ground)
 
     def foot_contacts(self) -> FloatArray:
         """(n,) 1.0 where a foot is within a millimetre of the ground, else 0.0."""
         if self.world.ground is None:
-            return np.zeros(len(self._foot_positions))
-        gap = distances_to_ground(self.node_positions_in_world(), self._heights, self._cell) - self.cables.foot_radii
-        return (gap <= kernel.GROUND_TOLERANCE).astype(float)
+            return np.zeros(len(self.model.node_bodies))
+        gap = self.heights_of(self.node_positions_in_world()) - self.model.foot_radii
+        return (gap <= GROUND_TOLERANCE).astype(float)

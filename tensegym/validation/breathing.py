@@ -33,7 +33,7 @@ def equal_rods(damping: float) -> RobotDesign:
 def breathe(damping: float, dt: float = 1e-3, periods: int = 30) -> tuple[float, float]:
     """Breathing mode in free flight in PyBullet: frequency [Hz] from zero crossings, damping ratio from peaks."""
     with TensegrityRobot(equal_rods(damping), dt=dt, ground=False) as robot:
-        poses = robot.cables.rest_poses
+        poses = robot.model.rest_poses
         outward = poses[:, :3] - poses[:, :3].mean(axis=0)
         velocities = np.zeros((6, 6))
         velocities[:, :3] = 2e-3 * outward / np.linalg.norm(outward, axis=1)[:, None]

@@ -31,9 +31,9 @@ def free_flight(
     """Fly without gravity, tumbling, the drives commanded at random every 0.2 s; default: six rods, no spin damping."""
     rng = np.random.default_rng(seed)
     with TensegrityRobot(design or RobotDesign(spin_damping=0.0), dt=dt, ground=False) as robot:
-        rest = robot.cables.rest_poses[:, :3]
+        rest = robot.model.rest_poses[:, :3]
         turning, moving = np.array([1.0, 2.0, -1.5]), np.array([0.3, -0.2, 0.1])
-        centre = robot.cables.masses @ rest / robot.cables.masses.sum()
+        centre = robot.model.masses @ rest / robot.model.masses.sum()
         velocities = np.hstack([moving + np.cross(turning, rest - centre), np.tile(turning, (len(rest), 1))])
         robot.reset_rotated(Rotation.identity(), velocities)
         start = robot.momentum_in_world()

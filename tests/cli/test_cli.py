@@ -267,7 +267,7 @@ def test_simulate_gives_back_what_the_api_does(cli, tmp_path):
         for tick in range(200):
             robot.command(np.array([np.interp(tick * 1e-3, times, angle) for angle in angles.T]))
             robot.step()
-        energies, account = robot.energies(), robot.account()
+        energies, account = robot.energies(), robot.totals()
         last = {name: values[-1] for name, values in column.items()}
         assert last["time_s"] == pytest.approx(0.2)
         nodes = [last[f"node_{n}_{axis}_m"] for n in range(1, 13) for axis in "xyz"]

@@ -394,7 +394,7 @@ def test_a_robot_that_comes_apart_leaves_the_bounds_and_ends():
         env.reset(seed=0)
         gait = env.step(actions(1)[0])[4]["gait"]
         env.robot.natural_lengths[:] = 1e3
-        rod, client = env.robot.world.bodies[0], env.robot.world.client
+        rod, client = env.robot.world.body_ids[0], env.robot.world.client
         pybullet.resetBaseVelocity(rod, [8, 0, 4], [0, 0, 0], physicsClientId=client)
         _check_ended(env, env.step(-np.ones(6)), "left the observation's bounds (2 rod lengths", gait)
 

@@ -6,8 +6,9 @@ from hypothesis import strategies as st
 from tensegym.design.design import ElasticCable, RobotDesign, paper_design
 from tensegym.errors import DesignError
 from tensegym.physics import cable_law as kernel
-from tensegym.physics.cable_geometry import cable_geometry
-from tensegym.physics.robot_arrays import cable_arrays, explicit_step_limit, mobility_at_rest
+from tensegym.physics.geometry import spring_geometry
+from tensegym.physics.model import DAMPING, STIFFNESS, new_out
+from tensegym.physics.robot_arrays import explicit_step_limit, mobility_at_rest, robot_model
 from tensegym.robot.robot import TensegrityRobot
 
 finite = st.floats(-3, 3)
@@ -18,7 +19,7 @@ finite = st.floats(-3, 3)
 def test_explicit_tension_is_never_negative_and_zero_when_slack(cables):
     lengths, rates, natural = (np.array(column) for column in zip(*cables, strict=True))
     params = np.zeros((len(cables), 9))
-    params[:, kernel.STIFFNESS], params[:, kernel.DAMPING] = 300, 5
+    params[:, STIFFNESS], params[:, DAMPING] = 300, 5
     tensions = np.full(len(cables), np.nan)
     kernel.explicit_tensions(params, lengths, rates, natural, tensions)
     assert (tensions >= 0).all()
@@ -30,19 +31,17 @@ def test_explicit_tension_is_never_negative_and_zero_when_slack(cables):
 
 def test_implicit_tensions_solve_the_complementarity_problem():
     design = RobotDesign()
-    arrays = cable_arrays(design)
+    arrays = robot_model(design)
     rng = np.random.default_rng(0)
-    count, dt = len(arrays.ends), 2e-3
-    turns, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
-    cable_geometry(arrays.rest_poses, arrays.ends, arrays.params, turns, directions, lengths)
-    pins = arrays.pins
-    natural = arrays.natural + rng.normal(0, 0.02, count)
+    count, dt = len(arrays.spring_bodies), 2e-3
+    out, lengths = new_out(arrays), np.empty(count)
+    spring_geometry(arrays, arrays.rest_poses, np.zeros(0), out, lengths)
+    natural = arrays.rest_lengths + rng.normal(0, 0.02, count)
     rates = rng.normal(0, 0.3, count)
     tensions = np.zeros(count)
-    kernel.implicit_tensions(arrays.rest_poses, arrays.ends, arrays.params, arrays.bodies, pins.partner, pins.bodies,
-                             pins.params, turns, directions, lengths, rates, natural, dt, tensions)  # fmt: skip
+    kernel.implicit_tensions(arrays, out, lengths, rates, natural, dt, tensions)
     mobility = mobility_at_rest(arrays)
-    k, c = arrays.params[:, kernel.STIFFNESS], arrays.params[:, kernel.DAMPING]
+    k, c = arrays.spring_params[:, STIFFNESS], arrays.spring_params[:, DAMPING]
     stretch_after = lengths + dt * rates - natural
     # tension of the law at the end of the step, were these tensions to act during it
     end_rates = rates - dt * mobility @ tensions
@@ -59,13 +58,13 @@ def test_implicit_tensions_solve_the_complementarity_problem():
 
 def test_mobility_is_the_effect_of_tensions_on_length_rates():
     """A = J M^-1 J^T against finite differences of the lengths."""
-    arrays = cable_arrays(RobotDesign())
-    poses, count = arrays.rest_poses, len(arrays.ends)
+    arrays = robot_model(RobotDesign())
+    poses, count = arrays.rest_poses, len(arrays.spring_bodies)
 
     def lengths_at(changed):
-        turns, directions, lengths = np.empty((count, 2, 3)), np.empty((count, 3)), np.empty(count)
-        cable_geometry(changed, arrays.ends, arrays.params, turns, directions, lengths)
-        return turns, directions, lengths
+        out, lengths = new_out(arrays), np.empty(count)
+        spring_geometry(arrays, changed, np.zeros(0), out, lengths)
+        return out.moment_arms, out.directions, lengths
 
     turns, directions, lengths = lengths_at(poses)
     mobility = mobility_at_rest(arrays)
@@ -77,7 +76,7 @@ def test_mobility_is_the_effect_of_tensions_on_length_rates():
     cable, step = 7, 1e-7
     moved = poses.copy()
     for side, sign in ((0, 1), (1, -1)):
-        body = arrays.ends[cable, side]
+        body = arrays.spring_bodies[cable, side]
         force = sign * directions[cable]
         moved[body, :3] += step * force / arrays.masses[body]
         turn = Rotation.from_quat(poses[body, 3:])
@@ -89,9 +88,9 @@ def test_mobility_is_the_effect_of_tensions_on_length_rates():
 
 
 def test_step_limit_separates_stable_from_unstable():
-    limit = explicit_step_limit(cable_arrays(RobotDesign()))
+    limit = explicit_step_limit(robot_model(RobotDesign()))
     assert 1e-3 < limit < 2.07e-3
-    assert explicit_step_limit(cable_arrays(paper_design())) < 0.242e-3
+    assert explicit_step_limit(robot_model(paper_design())) < 0.242e-3
     with pytest.raises(DesignError, match="over the explicit limit"):
         TensegrityRobot(dt=2e-3, integrator="explicit")
 

@@ -7,13 +7,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from tensegym.design.design import RobotDesign
-from tensegym.physics.rod_rotation import (
-    angular_velocity,
-    arcsine_ratio,
-    bullet_gyroscopic_change,
-    sine_ratios,
-    turned,
-)
+from tensegym.physics.rod_rotation import bullet_gyroscopic_change
+from tensegym.physics.vectors import angular_velocity, arcsine_ratio, sine_ratios, turn
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.structure.structure import Structure, six_rod
 
@@ -54,7 +49,7 @@ def test_series_of_small_angles_are_exact_to_rounding():
 @given(st.integers(0, 2**31), vectors, st.sampled_from([1e-3, -1e-3, 0.2]))
 def test_turned_is_the_rotation_by_w_times_time(seed, w, time):
     axis = Rotation.random(random_state=np.random.default_rng(seed)).as_matrix()[:, 2].copy()
-    np.testing.assert_allclose(turned(axis, w, time), Rotation.from_rotvec(w * time).apply(axis), atol=2e-15)
+    np.testing.assert_allclose(turn(axis, w, time), Rotation.from_rotvec(w * time).apply(axis), atol=2e-15)
 
 
 @pytest.mark.parametrize("rate", [(8.0, 0.0, 8.0), (3.0, 2.0, 20.0)])
@@ -67,7 +62,7 @@ def test_a_lone_spinning_rod_keeps_energy_momentum_and_spin(rate):
     bare = Structure(nodes, whole.rods, np.zeros((0, 2), int), np.zeros((0, 2), int))
     design = RobotDesign(structure=bare, form_finding=False, spin_damping=0.0)
     with TensegrityRobot(design, ground=False) as robot:
-        poses = robot.cables.rest_poses
+        poses = robot.model.rest_poses
         apart = 0.2 * (poses[:, :3] - poses[:, :3].mean(axis=0))
         turning = [Rotation.from_quat(p[3:]).apply(rate) for p in poses]
         robot.reset_rotated(Rotation.identity(), np.hstack([apart, turning]))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tensegym.errors import DesignError, SimulationError
-from tensegym.physics.terrain import FLAT, Terrain, distance_to_ground, distances_to_ground
+from tensegym.physics.terrain import FLAT, Ground, Terrain, distance_to_ground, distances_to_ground
 from tensegym.robot.gait import GaitMeter
 from tensegym.robot.robot import TensegrityRobot
 
@@ -38,42 +38,40 @@ def test_bumps_come_from_their_seed_and_leave_a_clearing():
     assert not np.array_equal(heights, Terrain(roughness=0.03, reach=4.0, seed=3).heights(0.5))
     angles = np.linspace(0, 2 * math.pi, 50)
     rim = 0.5 * np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
-    np.testing.assert_array_equal(distances_to_ground(rim, heights, ROUGH.cell), 0)
+    np.testing.assert_array_equal(distances_to_ground(rim, Ground(heights, ROUGH.cell)), 0)
 
 
 def test_distance_to_a_tilted_plane():
     """Heights 0.3 x + 0.4 y + 0.01: the distance is along the normal (-0.3, -0.4, 1) / sqrt(1.25)."""
     x = np.arange(-5, 6) * 0.1
-    heights = 0.3 * x[:, None] + 0.4 * x + 0.01
+    ground = Ground(0.3 * x[:, None] + 0.4 * x + 0.01, 0.1)
     for point in np.random.default_rng(0).uniform(-0.5, 0.5, (20, 3)):
         expected = (point[2] - 0.3 * point[0] - 0.4 * point[1] - 0.01) / math.sqrt(1.25)
-        assert distance_to_ground(point, heights, 0.1) == pytest.approx(expected, abs=1e-12)
-    assert math.isnan(distance_to_ground(np.array([0.51, 0.0, 0.0]), heights, 0.1))
+        assert distance_to_ground(point, ground) == pytest.approx(expected, abs=1e-12)
+    assert math.isnan(distance_to_ground(np.array([0.51, 0.0, 0.0]), ground))
 
 
 def test_a_table_of_zeros_counts_feet_as_the_plane_does():
     accounts = []
-    for heights in (FLAT, np.zeros((81, 81))):
+    for ground in (FLAT, Ground(np.zeros((81, 81)), 0.1)):
         with TensegrityRobot(dt=2e-3) as robot:
-            robot._heights, robot._cell = heights, 0.1
-            robot._kernel_arguments = robot._flat()
-            robot._heights = FLAT  # to the rest of the robot it is a plane, so that only the lookup differs
+            robot._ground = ground  # to the engine it is a plane, so that only the lookup differs
             robot.push([1.0, 0, 0])
             robot.step(250)
-            accounts.append(robot.account())
+            accounts.append(robot.totals())
     assert accounts[0] == accounts[1]
     assert accounts[0].foot_path > 0
 
 
 def test_a_robot_at_rest_on_bumps_stays_and_does_not_slip(settled):
-    meter, account = GaitMeter(settled, np.array([1.0, 0.0])), settled.account()
+    meter, account = GaitMeter(settled, np.array([1.0, 0.0])), settled.totals()
     begin = settled.node_positions_in_world()
     for _ in range(10):
         settled.step(50)
         meter.update()
     assert np.ptp(begin[settled.foot_contacts() > 0, 2]) > 0.01  # on bumps, not on the clearing
     assert np.abs(settled.node_positions_in_world() - begin).max() < 1e-3
-    assert settled.account().foot_path - account.foot_path < 1e-3
+    assert settled.totals().foot_path - account.foot_path < 1e-3
     assert meter.tips == 0
     assert meter.metrics().audit_passed
 
@@ -85,9 +83,9 @@ def test_foot_contacts_are_those_of_the_engine(settled):
         if (row[1] != world.ground and row[2] != world.ground) or row[9] <= 0:
             continue
         point = np.array(row[5] if row[1] == world.ground else row[6])  # on the ground
-        assert abs(distance_to_ground(point, settled._heights, settled._cell)) < 1e-4
+        assert abs(settled.heights_of(point[None])[0]) < 1e-4
         near = np.linalg.norm(feet - point, axis=1)
-        assert near.min() < 1.1 * settled.cables.foot_radii[0]
+        assert near.min() < 1.1 * settled.model.foot_radii[0]
         loaded[near.argmin()] = 1.0
     assert loaded.sum() >= 3
     np.testing.assert_array_equal(settled.foot_contacts(), loaded)
@@ -102,9 +100,9 @@ def test_no_contact_hides_another(seed):
         for _ in range(100):
             robot.command(rng.uniform(0, 1, len(robot.drives)) * robot.command_limit)
             robot.step(20)
-            heights = distances_to_ground(robot.node_positions_in_world(), robot._heights, robot._cell)
+            heights = robot.heights_of(robot.node_positions_in_world())
             least = min(least, heights.min())
-        assert least > 0.5 * robot.cables.foot_radii[0]
+        assert least > 0.5 * robot.model.foot_radii[0]
 
 
 def test_rough_ground_leaves_other_worlds_as_they_are():

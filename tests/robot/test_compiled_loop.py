@@ -24,7 +24,7 @@ def roll(design: RobotDesign, dt: float, compiled: bool, ground: bool | Terrain 
         for _ in range(5):
             robot.command(rng.uniform(0, 1, len(robot.drives)) * robot.command_limit)
             robot.step(round(0.1 / dt))
-        account = np.array(list(vars(robot.account()).values()))
+        account = np.array(list(vars(robot.totals()).values()))
         return (robot.poses_in_world.copy(), robot.velocities_in_world(), robot.tensions.copy(), robot.lengths.copy(),
                 robot.drives.copy(), robot.flexure_angles.copy(), account)  # fmt: skip
 
@@ -59,7 +59,7 @@ def test_a_closed_world_is_an_error_and_not_a_crash():
 @needs_symbols
 def test_a_handle_is_given_only_for_the_client_meant():
     with TensegrityRobot(compiled=True) as robot:
-        client, total, *_ = robot.world.engine
+        client, total, *_ = robot.world.hand_over()
         assert direct_calls.client_handle(client, total) != 0
         assert direct_calls.client_handle(client, total + 1) == 0  # another world, or a body gone
         for nobody in (client + 1, -1, 10**6):
@@ -70,7 +70,8 @@ def test_a_handle_is_given_only_for_the_client_meant():
 def test_states_are_read_where_the_engine_writes_them_or_else_copied():
     with TensegrityRobot(flexible_design(), compiled=True) as robot:
         robot.step(20)
-        client, total, window, bodies, pinned, poses, angles = robot.world.engine
+        client, total, window, bodies, pinned = robot.world.hand_over()
+        poses, angles = robot.world.poses, robot.world.angles
         assert window.all()
         handle = direct_calls.client_handle(client, total)
         there, copied = np.zeros((2, *poses.shape))
@@ -88,7 +89,7 @@ def test_states_are_read_where_the_engine_writes_them_or_else_copied():
 def test_without_a_window_the_states_are_copied(monkeypatch):
     monkeypatch.setattr(state_window, "_MEMORY", Path("/nonexistent"))
     with TensegrityRobot(compiled=True) as robot, TensegrityRobot(compiled=False) as reference:
-        assert not robot.world.engine[2].any()
+        assert not robot.world.hand_over().window.any()
         for each in (robot, reference):
             each.step(50)
         np.testing.assert_array_equal(robot.poses_in_world, reference.poses_in_world)

@@ -14,7 +14,7 @@ from tensegym.design.design_file import as_design, load_design, save_design
 from tensegym.design.parameters import ElasticCable, Payload, Rod, RodFlexure
 from tensegym.design.urdf_writer import urdf_files
 from tensegym.errors import DesignError, FlexureError
-from tensegym.physics.robot_arrays import cable_arrays, mobility_at_rest
+from tensegym.physics.robot_arrays import mobility_at_rest, robot_model
 from tensegym.robot.modes import design_modes
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.structure.modes import free_modes
@@ -121,15 +121,15 @@ def test_compression_softens_the_bending():
 
 def test_mobility_of_pinned_rods_is_the_effect_of_tensions_on_length_rates():
     """A = J M^-1 J^T, M from the modes' coordinates, J by differences of the lengths in the engine's kinematics."""
-    arrays = cable_arrays(flexible_design())
+    arrays = robot_model(flexible_design())
     mobility = mobility_at_rest(arrays)
     np.testing.assert_allclose(mobility, mobility.T)
     assert np.linalg.eigvalsh(mobility)[0] > -1e-9
     # a flexure's own row: two halves free to turn about their pin, rigid motion taken out
     row = arrays.first_flexure
-    one = arrays.pins.bodies[0, 0]
+    one = arrays.pin_bodies[0, 0]
     m, inertia = arrays.masses[one], arrays.inertias[one, 0]
-    arm = np.linalg.norm(arrays.pins.params[0, :3])
+    arm = np.linalg.norm(arrays.pin_params[0, :3])
     # each half turns by half the angle, its centre moves arm times that, less the common motion of the middle
     about_pin = inertia + m * arm**2
     reduced = 0.5 * (about_pin - m * arm**2)
@@ -145,12 +145,12 @@ def test_momentum_is_kept_in_free_flight_as_by_rigid_rods(dt):
 
 def bend(robot, rate):
     """Start with every rod bending at ``rate`` [rad/s], momentum zero."""
-    arrays = robot.cables
+    arrays = robot.model
     v = np.zeros((len(arrays.masses), 6))
-    for one, two in arrays.pins.bodies:
+    for one, two in arrays.pin_bodies:
         axis = Rotation.from_quat(arrays.rest_poses[one, 3:]).apply([0, 1, 0])
         for body, sign in ((one, -0.5), (two, 0.5)):
-            pin = arrays.rest_poses[arrays.pins.bodies[arrays.pins.bodies[:, 0] == one][0], :3].mean(axis=0)
+            pin = arrays.rest_poses[arrays.pin_bodies[arrays.pin_bodies[:, 0] == one][0], :3].mean(axis=0)
             v[body, 3:] = sign * rate * axis
             v[body, :3] = np.cross(v[body, 3:], arrays.rest_poses[body, :3] - pin)
     robot.reset_rotated(Rotation.identity(), v)

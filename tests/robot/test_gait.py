@@ -84,7 +84,7 @@ def test_a_step_counts_its_tips_and_its_energy():
         meter = GaitMeter(robot, X)
         assert meter.face == tip.from_face
         faces = [meter.face]
-        begin = robot.account()
+        begin = robot.totals()
 
         def watch(_):
             meter.update()
@@ -96,7 +96,7 @@ def test_a_step_counts_its_tips_and_its_energy():
         assert meter.face == tip.to_face
         assert gait.tips == np.count_nonzero(np.diff(faces)) >= 1
         along = gait.speed * gait.duration
-        assert gait.energy == pytest.approx(robot.account().electrical_energy - begin.electrical_energy)
+        assert gait.energy == pytest.approx(robot.totals().electrical_energy - begin.electrical_energy)
         assert gait.energy > gait.drive_work > 0
         if along > 0:
             weight = robot.design.mass * robot.design.gravity

@@ -35,11 +35,11 @@ def test_committed_urdfs_are_what_the_default_design_writes():
 
 def test_bodies_have_the_designs_mass_and_inertia():
     with TensegrityRobot(RobotDesign(payload=Payload())) as robot:
-        for row, body in enumerate(robot.world.bodies):
+        for row, body in enumerate(robot.world.body_ids):
             info = pybullet.getDynamicsInfo(body, -1, physicsClientId=robot.world.client)
-            assert info[0] == pytest.approx(robot.cables.masses[row])
-            np.testing.assert_allclose(info[2], robot.cables.inertias[row], rtol=1e-12)
-        assert sum(robot.cables.masses) == pytest.approx(1.698 + 0.5)
+            assert info[0] == pytest.approx(robot.model.masses[row])
+            np.testing.assert_allclose(info[2], robot.model.inertias[row], rtol=1e-12)
+        assert sum(robot.model.masses) == pytest.approx(1.698 + 0.5)
 
 
 @pytest.mark.parametrize("face", range(0, 20, 4))
@@ -49,7 +49,7 @@ def test_stands_on_a_face_at_a_heading(face):
         robot.step(1500)
         down = robot.foot_contacts().nonzero()[0]
         assert sorted(down) == sorted(robot.faces.triangles[face])
-        structure, masses = robot.design.standing, robot.cables.masses
+        structure, masses = robot.design.standing, robot.model.masses
         centre = masses @ structure.nodes[structure.rods].mean(axis=1) / masses.sum()
         rigid = resting_height(structure.nodes, robot.faces.triangles[face], centre) + 0.004
         assert rigid - 0.05 < robot.centre_of_mass_in_world()[2] < rigid  # the cables give a little under the weight
@@ -108,7 +108,7 @@ def test_drives_work_is_the_energy_gained_in_free_flight_without_damping():
             start = robot.energies().total
             robot.command(0.3 * robot.command_limit)
             robot.step(round(0.5 / dt))
-            work = robot.account().drive_work
+            work = robot.totals().drive_work
             errors.append(abs(robot.energies().total - start - work) / work)
     assert errors[0] < 0.01
     assert errors[1] < 0.7 * errors[0]
