@@ -34,7 +34,9 @@ class Batch:
         """Observation and action space of one environment."""
         return self.envs[0].observation_space, self.envs[0].action_space
 
-    def reset(self, seeds: Sequence[int | None], options: dict[str, Any] | None) -> tuple[np.ndarray, list[dict]]:
+    def reset(
+        self, seeds: Sequence[int | None], options: dict[str, Any] | None
+    ) -> tuple[np.ndarray, list[dict[str, Any]]]:
         """Observations (n, o) and infos of fresh episodes."""
         starts = [env.reset(seed=seed, options=options) for env, seed in zip(self.envs, seeds, strict=True)]
         self._steps[:] = 0
@@ -95,7 +97,9 @@ class Processes:
         """Call a method of all workers' batches at a time: with its rows of each of ``by_row``, and ``options``."""
         return call_all(self.workers, method, [(*(part[rows] for part in by_row), *options) for rows in self.rows])
 
-    def reset(self, seeds: Sequence[int | None], options: dict[str, Any] | None) -> tuple[np.ndarray, list[dict]]:
+    def reset(
+        self, seeds: Sequence[int | None], options: dict[str, Any] | None
+    ) -> tuple[np.ndarray, list[dict[str, Any]]]:
         """As Batch.reset."""
         observations, infos = zip(*self._ask("reset", list(seeds), options=(options,)), strict=True)
         return np.concatenate(observations), list(chain(*infos))

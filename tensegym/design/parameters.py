@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from tensegym.flexure.hinge import Hinge
 
 
-def bounded(low: float, high: float, default: float, unit: str, what: str, *, open_low: bool = False):
+def bounded(low: float, high: float, default: float, unit: str, what: str, *, open_low: bool = False) -> Any:
     """A dataclass field holding a float in [low, high], or (low, high] with ``open_low``."""
     return field(default=default, metadata={"low": low, "high": high, "open_low": open_low, "unit": unit, "what": what})
 

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 
 from tensegym.arrays import FloatArray
-from tensegym.design.design import Drive
+from tensegym.design.parameters import Drive
 
 from .vectors import KERNEL
 
