@@ -14,8 +14,9 @@ from tensegym.structure import structure as structures
 from tensegym.structure.equilibrium import check_balance
 from tensegym.structure.form_finding import form_find
 from tensegym.structure.structure import Structure
+from tensegym.tables import bounded, check_fields
 
-from .parameters import Drive, ElasticCable, Payload, Rod, RodFlexure, StiffCable, bounded, check_ranges
+from .parameters import Drive, ElasticCable, Payload, Rod, RodFlexure, StiffCable
 
 if TYPE_CHECKING:
     from tensegym.flexure.models.rod_pin import RodPin
@@ -46,7 +47,7 @@ class RobotDesign:
     gravity: float = bounded(0, 100, 9.81, "m/s^2", "downward")
 
     def __post_init__(self) -> None:
-        check_ranges(self)
+        check_fields(self, DesignError)
         standing = self.structure
         if self.elastic_cable.natural_length is None:
             if self.form_finding:

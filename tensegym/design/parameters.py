@@ -2,45 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from tensegym.errors import DesignError
+from tensegym.tables import Checked, check_fields, choice, noted
+from tensegym.tables import bounded as bounded
 
 if TYPE_CHECKING:
     from tensegym.flexure.hinge import Hinge
 
 
-def bounded(low: float, high: float, default: float, unit: str, what: str, *, open_low: bool = False) -> Any:
-    """A dataclass field holding a float in [low, high], or (low, high] with ``open_low``."""
-    return field(default=default, metadata={"low": low, "high": high, "open_low": open_low, "unit": unit, "what": what})
-
-
 def check_ranges(group: object) -> None:
-    """Raise DesignError naming the first field of a dataclass that is no finite number in its range."""
-    for f in fields(group):  # type: ignore[arg-type]
-        if "low" not in f.metadata:
-            continue
-        value, low, high = getattr(group, f.name), f.metadata["low"], f.metadata["high"]
-        number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-        inside = number and low <= value <= high and not (f.metadata["open_low"] and value == low)
-        if not inside:
-            bracket = "(" if f.metadata["open_low"] else "["
-            allowed = f"{bracket}{low:g}, {high:g}] {f.metadata['unit']}".rstrip()
-            raise DesignError(f"{type(group).__name__}.{f.name} = {value!r} is outside {allowed}")
-
-
-class Checked:
-    """Base of the parameter groups: ranges are checked on construction."""
-
-    def __post_init__(self) -> None:
-        check_ranges(self)
+    """Raise DesignError naming the first field of a dataclass that has the wrong type or is outside its range."""
+    check_fields(group, DesignError)
 
 
 @dataclass(frozen=True)
-class Rod(Checked):
+class Rod(Checked, error=DesignError):
     """A rod: a tube with an equal lumped mass at each end and a spherical foot."""
 
     tube_mass: float = bounded(0, 100, 0.028, "kg", "mass of the tube", open_low=True)
@@ -95,23 +74,19 @@ class HalfRod:
 
 
 @dataclass(frozen=True)
-class ElasticCable(Checked):
+class ElasticCable(Checked, error=DesignError):
     """The elastic cables: spring-dampers, tension only unless ``two_way``."""
 
     stiffness: float = bounded(0, 1e6, 300.0, "N/m", "spring rate", open_low=True)
     damping: float = bounded(0, 1e4, 5.0, "N s/m", "damper rate")
     pretension: float = bounded(0, 1e4, 10.0, "N", "tension at rest, which sets the natural length")
-    natural_length: float | None = None  # m; given, it overrides the pretension (the paper's way)
-    two_way: bool = False  # the paper's springs push as well as pull
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.natural_length is not None and not 0 < self.natural_length < 100:
-            raise DesignError(f"ElasticCable.natural_length = {self.natural_length!r} is outside (0, 100] m")
+    natural_length: float | None = bounded(0, 100, None, "m", "given, it overrides the pretension (the paper's way)",
+                                           open_low=True)
+    two_way: bool = noted(False, "push as well as pull, as the paper's springs do")
 
 
 @dataclass(frozen=True)
-class StiffCable(Checked):
+class StiffCable(Checked, error=DesignError):
     """The cables the drives wind."""
 
     stiffness: float = bounded(0, 1e6, 2e4, "N/m", "spring rate", open_low=True)
@@ -121,7 +96,7 @@ class StiffCable(Checked):
 
 
 @dataclass(frozen=True)
-class Drive(Checked):
+class Drive(Checked, error=DesignError):
     """A winch drive: brushless motor, rotor angle sensor, gear, spool, and its angle controller."""
 
     spool_radius: float = bounded(1e-4, 1, 0.003, "m", "radius of the spool")
@@ -140,7 +115,7 @@ class Drive(Checked):
 
 
 @dataclass(frozen=True)
-class Payload(Checked):
+class Payload(Checked, error=DesignError):
     """A ball in the middle, hung on one elastic cable from every rod's mid-point."""
 
     mass: float = bounded(0, 100, 0.5, "kg", "payload", open_low=True)
@@ -148,27 +123,26 @@ class Payload(Checked):
     stiffness: float = bounded(0, 1e6, 120.0, "N/m", "spring rate", open_low=True)
     damping: float = bounded(0, 1e4, 5.0, "N s/m", "damper rate")
     pretension: float = bounded(0, 1e4, 4.0, "N", "tension at rest")
-    natural_length: float | None = None  # m; given, it overrides the pretension
-    two_way: bool = False
+    natural_length: float | None = bounded(0, 100, None, "m", "given, it overrides the pretension", open_low=True)
+    two_way: bool = noted(False, "push as well as pull")
 
 
 @dataclass(frozen=True)
-class RodFlexure(Checked):
+class RodFlexure(Checked, error=DesignError):
     """A flexure hinge that splits rods at mid-length: they bend in one plane, about a pin with a spring fitted to it.
 
     ``hinge`` is a preset of tensegym.flexure.presets; a dimension left out keeps that preset's own. The pin and its
     spring come from the hinge's finite elements (tensegym.flexure.models.rod_pin); the other five directions are held.
     """
 
-    rods: str = "passive"
-    """Which rods are split: passive, active or all."""
-    hinge: str = "leaf-spring"
-    plane: str = "radial"
-    """Where they bend: radial, the plane through the robot's centre; tangential, the one across it."""
+    rods: str = choice("passive", "active", "all", what="which rods are split")
+    hinge: str = noted("leaf-spring", "a preset hinge")
+    plane: str = choice("radial", "tangential",
+                        what="where they bend: in the plane through the robot's centre, or in the one across it")
     length: float = bounded(1e-3, 0.5, 0.04, "m", "of the hinge along the rod")
     width: float = bounded(1e-4, 0.5, 0.025, "m", "of the leaves, across the plane of bending")
     thickness: float = bounded(1e-5, 0.02, 0.0011, "m", "of the leaves")
-    height: float | None = None  # m; of hinges that have one, else the preset's own
+    height: float | None = bounded(0, 0.5, None, "m", "of hinges that have one; else the preset's own", open_low=True)
     youngs_modulus: float = bounded(1e6, 1e12, 2.1e11, "Pa", "of the leaves: spring steel")
     poisson_ratio: float = bounded(0, 0.49, 0.3, "", "of the leaves")
     loss_time: float = bounded(0, 1, 1e-3, "s", "Kelvin-Voigt: damping over stiffness")
@@ -176,11 +150,6 @@ class RodFlexure(Checked):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for name, allowed in (("rods", ("passive", "active", "all")), ("plane", ("radial", "tangential"))):
-            if getattr(self, name) not in allowed:
-                raise DesignError(f"RodFlexure.{name} = {getattr(self, name)!r} is not one of {', '.join(allowed)}")
-        if self.height is not None and not 0 < self.height <= 0.5:
-            raise DesignError(f"RodFlexure.height = {self.height!r} is outside (0, 0.5] m")
         self.geometry()
 
     def geometry(self) -> Hinge:

@@ -24,8 +24,9 @@ from typing import Any
 import tomli_w
 
 from tensegym.design.design_file import design_from_dict, design_to_dict
-from tensegym.design.parameters import Checked, bounded, check_ranges
+from tensegym.design.parameters import check_ranges
 from tensegym.errors import DesignError, InputError, StructureError
+from tensegym.tables import Checked, bounded
 
 from .controllers import check_controller
 from .measure import Bound, Objective

@@ -45,9 +45,9 @@ def test_payload_round_trip_and_natural_length(tmp_path):
 
 @given(st.sampled_from([Rod, ElasticCable, Drive, Payload]), st.data())
 def test_every_bounded_field_is_refused_below_its_range(kind, data):
-    bounded = [f for f in fields(kind) if "low" in f.metadata]
+    bounded = [f for f in fields(kind) if "range" in f.metadata]
     chosen = data.draw(st.sampled_from(bounded))
-    value = chosen.metadata["low"] - data.draw(st.floats(1e-6, 1e6))
+    value = chosen.metadata["range"].low - data.draw(st.floats(1e-6, 1e6))
     with pytest.raises(DesignError, match=rf"{kind.__name__}\.{chosen.name} = "):
         kind(**{chosen.name: value})
 

@@ -1,0 +1,126 @@
+"""TOML and YAML files as plain tables: whatever is wrong with one ends in one line that names file, line and column."""
+
+from __future__ import annotations
+
+import codecs
+import tomllib
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from .values import Error, mapping, one_line
+
+LARGEST_FILE = 4_000_000  # bytes
+_WIDE = {codecs.BOM_UTF16_LE: "UTF-16", codecs.BOM_UTF16_BE: "UTF-16", codecs.BOM_UTF32_LE: "UTF-32"}
+
+
+def read_text(path: str | Path, what: str, error: Error, limit: int = LARGEST_FILE) -> str:
+    """The text of a file.
+
+    Args:
+        path: of the file.
+        what: kind of file, for messages, as in "design file".
+        error: raised for a file too large or not in UTF-8.
+        limit: largest size [bytes].
+
+    Raises:
+        FileNotFoundError: there is no such file.
+    """
+    path = Path(path)
+    try:
+        if not path.is_file():
+            raise FileNotFoundError(one_line(f"no {what} {path}"))
+        with path.open("rb") as file:
+            data = file.read(limit + 1)
+    except (ValueError, PermissionError) as fault:  # a null in the name; no right to read
+        raise error(one_line(f"{what} {str(path)!r} cannot be read: {fault}")) from fault
+    if len(data) > limit:
+        raise error(one_line(f"{what} {path} is larger than {limit / 1e6:g} MB; it is none"))
+    return decode(data, f"{what} {path}", error)
+
+
+def decode(data: bytes, name: str, error: Error) -> str:
+    """UTF-8 text, with or without a byte order mark. Raises ``error`` with ``name``, line and column."""
+    for mark, coding in _WIDE.items():
+        if data.startswith(mark):
+            raise error(one_line(f"{name} is written in {coding}; save it as UTF-8"))
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as fault:
+        before = data[: fault.start]
+        line, column = before.count(b"\n") + 1, fault.start - before.rfind(b"\n")
+        raise error(one_line(
+            f"{name} is not UTF-8: byte 0x{data[fault.start]:02x} at line {line}, column {column}; save it as UTF-8"
+        )) from fault  # fmt: skip
+
+
+def parse_toml(text: str, name: str, error: Error) -> dict[str, Any]:
+    """Tables of a TOML text. Raises ``error`` naming the file by ``name``, with line and column."""
+    try:
+        return tomllib.loads(text.removeprefix("\ufeff"))
+    except tomllib.TOMLDecodeError as fault:
+        raise error(one_line(f"{name} is not TOML: {fault}")) from fault
+    except RecursionError as fault:
+        raise error(one_line(f"{name} is not read: its brackets are nested too deep")) from fault
+    except ValueError as fault:  # more digits than Python converts; a date that no calendar has
+        raise error(one_line(f"{name} is not read: {fault}")) from fault
+
+
+def parse_yaml(text: str, name: str, error: Error) -> dict[str, Any]:
+    """Fields of a YAML text, {} for an empty one; dates stay texts, aliases and repeated fields are refused.
+
+    Raises ``error`` naming the file by ``name``, with line and column.
+    """
+    import yaml
+
+    try:
+        data = yaml.load(text.removeprefix("\ufeff"), Loader=_loader())
+    except yaml.YAMLError as fault:
+        mark = getattr(fault, "problem_mark", None)
+        place = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        reason = getattr(fault, "problem", None) or str(fault)
+        raise error(one_line(f"{name} is not YAML: {reason}{place}")) from fault
+    except RecursionError as fault:
+        raise error(one_line(f"{name} is not read: its brackets are nested too deep")) from fault
+    except (ValueError, TypeError) as fault:  # more digits than Python converts
+        raise error(one_line(f"{name} is not read: {fault}")) from fault
+    return {} if data is None else mapping(data, name, error)
+
+
+def read_toml(path: str | Path, what: str, error: Error) -> dict[str, Any]:
+    """Tables of a TOML file. Raises FileNotFoundError, or ``error`` naming ``what`` and the path."""
+    return parse_toml(read_text(path, what, error), f"{what} {path}", error)
+
+
+def read_yaml(path: str | Path, what: str, error: Error) -> dict[str, Any]:
+    """Fields of a YAML file. Raises FileNotFoundError, or ``error`` naming ``what`` and the path."""
+    return parse_yaml(read_text(path, what, error), f"{what} {path}", error)
+
+
+@cache
+def _loader() -> Any:
+    """yaml's safe loader without dates, aliases and repeated keys; made when first asked for, as yaml is optional."""
+    import yaml
+
+    class Loader(yaml.SafeLoader):  # type: ignore[misc]
+        yaml_implicit_resolvers = {  # noqa: RUF012
+            first: [(tag, pattern) for tag, pattern in resolvers if tag != "tag:yaml.org,2002:timestamp"]
+            for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
+        }
+
+        def compose_node(self, parent: Any, index: Any) -> Any:
+            if self.check_event(yaml.AliasEvent):
+                mark = self.peek_event().start_mark
+                raise yaml.composer.ComposerError(None, None, "an alias (*name) stands there; write it out", mark)
+            return super().compose_node(parent, index)
+
+        def construct_mapping(self, node: Any, deep: bool = False) -> Any:
+            seen = set()
+            for key, _ in node.value:
+                if key.value in seen if isinstance(key.value, str) else False:
+                    raise yaml.constructor.ConstructorError(
+                        None, None, f"the field {key.value[:60]!r} is given twice", key.start_mark)
+                seen.add(key.value if isinstance(key.value, str) else None)
+            return super().construct_mapping(node, deep)
+
+    return Loader
