@@ -40,6 +40,11 @@ def _rows(count: int, height: float) -> tuple[Any, Any]:
     return new_figure(count, 2, size=(10, height * count), squeeze=False)
 
 
+def _load_of(hinge: Hinge) -> str:
+    """What a title adds where the sweep is not that of the paper's stand."""
+    return "" if hinge.arm else ", pure moment"
+
+
 def _draw_shape(axis: Any, hinge: Hinge, nodes: FloatArray, colour: str, alpha: float = 1.0) -> None:
     """One shape of the hinge from its nodes (k, 3), [mm] on the axes: leaves, bodies as the lines that join them."""
     first = 0
@@ -102,7 +107,7 @@ def draw_torque(joints: dict[str, Joint], path: Path, measured: dict[str, States
             points = measured[name]
             left.plot(np.degrees(points.theta), 1e3 * points.moment, "o", ms=4, mfc="none", color="tab:blue",
                       label="measured")  # fmt: skip
-        title = f"{name} ({joint.hinge.material.modulus_name})"
+        title = f"{name} ({joint.hinge.material.modulus_name}){_load_of(joint.hinge)}"
         left.set(title=title, xlabel=r"angle $\theta$ [deg]", ylabel="moment about the tip [N mm]")
         right.set(title="model less FEM", xlabel=r"angle $\theta$ [deg]", ylabel="moment [N mm]")
         for axis in (left, right):
@@ -123,7 +128,7 @@ def draw_drift(joints: dict[str, Joint], path: Path) -> None:
             for values, style, part in ((x, "-", "x"), (y, "--", "y")):
                 name_ = f"{part}, {label}: b = {place.b:.3f}"
                 axis.plot(np.degrees(sweep.theta), values, style, color=colour, label=name_)
-        axis.set(title=name, xlabel=r"angle $\theta$ [deg]", ylabel="drift of the axis [mm]")
+        axis.set(title=name + _load_of(joint.hinge), xlabel=r"angle $\theta$ [deg]", ylabel="drift of the axis [mm]")
         axis.grid(alpha=0.3)
         axis.legend(fontsize=7)
     save(figure, path)
@@ -144,7 +149,7 @@ def draw_stiffness(joints: dict[str, Joint], path: Path) -> None:
         left.plot(angle, 1e-3 * k[:, 0], color="tab:blue", label="kx")
         left.plot(angle, 1e-3 * k[:, 1], "--", color="tab:orange", label="ky")
         right.plot(angle, k[:, 2], color="tab:green", label="kz, inverted")
-        title = f"{name}, b = {diagram.b:.3f}"
+        title = f"{name}{_load_of(joint.hinge)}, b = {diagram.b:.3f}"
         if isinstance(planar, PlanarSpring):
             title += f"; constant k over the box: kx {1e-3 * planar.kx:.3g}, ky {1e-3 * planar.ky:.3g} N/mm"
             right.axhline(planar.kz, color="black", lw=1, ls=":", label="kz, constant k")

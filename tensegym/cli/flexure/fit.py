@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -20,7 +21,7 @@ from tensegym.flexure.models.joint_file import joint_to_dict, save_joint
 from tensegym.flexure.models.joint_fit import fit_joint
 from tensegym.report import Report, table
 
-from .hinge_options import BoxOptions, HingeOptions
+from .hinge_options import BoxOptions, HingeOptions, refuse_unused
 
 
 @dataclass(frozen=True)
@@ -37,8 +38,8 @@ class Fit:
     data: Path | None = None
     """CSV of an experiment: angle_deg, x_mm, y_mm and force_N (at the arm's end, across the undeformed arm), or
     Fx_N and Fy_N there, or torque_Nmm. Without HINGE, --length-mm (40) and --arm-mm (120) tell the lengths."""
-    model: Literal["potential", "planar", "torsion"] = "potential"
-    """What to fit to --data."""
+    model: Literal["potential", "planar", "torsion"] | None = None
+    """What to fit to --data; the potential without. Angles and torques alone give torsion."""
     options: HingeOptions = field(default_factory=HingeOptions)
     box: BoxOptions = field(default_factory=BoxOptions)
     states: Annotated[int, Within(1, 100_000)] = 600
@@ -57,6 +58,7 @@ class Fit:
             return self._fit_data(self.data)
         if not self.hinge:
             raise InputError("give a HINGE to fit to its FEM, or --data FILE.csv to fit to an experiment")
+        refuse_unused(["model"] * (self.model is not None), "without --data: every model is fitted to a hinge's FEM")
         hinge = self.options.apply(self.hinge)
         began = time.perf_counter()
         joint = fit_joint(hinge, max_angle=self.box.max_angle, max_force=self.box.max_force_N, count=self.states,
@@ -73,12 +75,16 @@ class Fit:
         return Report(text, data)
 
     def _fit_data(self, path: Path) -> Report:
+        model = self.model or "potential"
+        refuse_unused(self.box.given(), "with --data, whose own range is fitted")
         if self.hinge:
             hinge = self.options.apply(self.hinge)
-            return fit_data(path, self.out, hinge.length, self.model, arm_length=hinge.arm, symmetry=symmetry_of(hinge))
+            return fit_data(path, self.out, hinge.length, model, arm_length=hinge.arm, symmetry=symmetry_of(hinge))
+        refuse_unused([name for name in self.options.given() if name not in ("length_mm", "arm_mm")],
+                      "with --data and without HINGE")  # fmt: skip
         length = PAPER_LENGTH if self.options.length_mm is None else MM * self.options.length_mm
         arm = ARM_LENGTH if self.options.arm_mm is None else MM * self.options.arm_mm
-        return fit_data(path, self.out, length, self.model, arm_length=arm)
+        return fit_data(path, self.out, length, model, arm_length=arm)
 
 
 def error_rows(joint: Joint) -> list[list[Any]]:
@@ -92,7 +98,7 @@ ERROR_HEADER = ["model", "tip RMS um", "tip max um", "torque RMS %", "torque max
 
 def describe(joint: Joint) -> str:
     """The joint as text: source, box, certificate, errors, notes."""
-    angle, force = 180 / 3.141592653589793 * joint.box.max_angle, joint.box.max_force
+    angle, force = math.degrees(joint.box.max_angle), joint.box.max_force
     lines = [joint.source, f"valid for |theta| <= {angle:.4g} deg, |Fx| and |Fy| at the tip <= {force:.4g} N"]
     if "potential" in joint.models:
         proof = joint.certificate()

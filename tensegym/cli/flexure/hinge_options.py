@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Annotated
 
 from tensegym.cli.options import Within
@@ -31,7 +31,7 @@ class HingeOptions:
     crossing: Annotated[float, Within(0.0, 1.0)] | None = None
     """cross-spring: fraction of the leaves' length at which they cross."""
     arm_mm: Annotated[float, Within(0.0, 1e5, "mm")] | None = None
-    """Presets: lever of the stand beyond the tip."""
+    """Presets: lever of the stand beyond the tip; 0: a pure moment turns the hinge."""
     youngs_modulus_GPa: Annotated[float, Within(0.0, 1e5, "GPa")] | None = None
     """E of the material."""
     poisson_ratio: Annotated[float, Within(-1.0, 0.5)] | None = None
@@ -40,6 +40,10 @@ class HingeOptions:
     """beam: E; plate: E/(1-nu^2); factor: --factor times E."""
     factor: Annotated[float, Within(0.0, 1e6)] | None = None
     """The user's factor on E, with --modulus factor."""
+
+    def given(self) -> list[str]:
+        """Names of the options that were given."""
+        return [field.name for field in fields(self) if getattr(self, field.name) is not None]
 
     def apply(self, name: str) -> Hinge:
         """The hinge ``name`` (a preset or a TOML file) with these options. Raises FlexureError or InputError."""
@@ -68,7 +72,17 @@ class BoxOptions:
     max_force_N: Annotated[float, Within(0.0, 1e6, "N")] | None = None
     """Largest force at the tip on each base axis; default: the pure moment at the largest rotation over L."""
 
+    def given(self) -> list[str]:
+        """Names of the options that were given."""
+        return [field.name for field in fields(self) if getattr(self, field.name) is not None]
+
     @property
     def max_angle(self) -> float | None:
         """[rad], or None."""
         return None if self.max_angle_deg is None else math.radians(self.max_angle_deg)
+
+
+def refuse_unused(options: list[str], reason: str) -> None:
+    """Raise InputError for options that would have no effect."""
+    if options:
+        raise InputError(f"--{options[0].replace('_', '-')} has no effect {reason}; leave it out")

@@ -15,13 +15,14 @@ from tensegym.cli.options import Within
 from tensegym.errors import InputError
 from tensegym.files import replace_file
 from tensegym.flexure.hinge import Hinge
-from tensegym.flexure.models.joint import MODELS
+from tensegym.flexure.measured.csv_rows import number_of, read_rows
+from tensegym.flexure.models.joint import MODELS, Joint
 from tensegym.flexure.models.joint_file import load_joint
 from tensegym.flexure.models.joint_fit import fit_joint
 from tensegym.flexure.models.load_solver import Answer, solve_fem, solve_model
 from tensegym.report import Report, table
 
-from .hinge_options import BoxOptions, HingeOptions
+from .hinge_options import BoxOptions, HingeOptions, refuse_unused
 
 LOADS = ("Fx_N", "Fy_N", "Mz_Nmm")
 POSES = ("theta_rad", "x_mm", "y_mm", "strain_energy_Nmm", "status")
@@ -51,6 +52,10 @@ class Solve:
             raise InputError(f"model = {self.model!r}; one of fem, {', '.join(MODELS)}")
         if (self.hinge is None) == (self.joint is None):
             raise InputError("give one of --hinge and --joint")
+        if self.joint is not None:
+            refuse_unused([*self.options.given(), *self.box.given()], "with --joint, whose hinge and box are fitted")
+        elif self.model == "fem":
+            refuse_unused(self.box.given(), "with the model fem, which has no box")
         if not self.out.parent.is_dir():
             raise FileNotFoundError(f"no folder {self.out.parent} to write {self.out.name} in")
         loads = read_loads(self.loads)
@@ -73,7 +78,7 @@ class Solve:
         if self.joint is not None:
             joint = load_joint(self.joint)
             if self.model != "fem":
-                return solve_model(joint.model(self.model), joint.box, loads), joint.source
+                return solve_model(joint.model(self.model), joint.box, loads), _told(joint)
             if joint.hinge is None:
                 raise InputError(f"{self.joint} was fitted to data and holds no hinge: the model fem needs one")
             return solve_fem(joint.hinge, loads, self.elements), joint.source
@@ -83,33 +88,23 @@ class Solve:
             return solve_fem(hinge, loads, self.elements), hinge.describe()
         joint = fit_joint(hinge, max_angle=self.box.max_angle, max_force=self.box.max_force_N, held_out=0,
                           elements=self.elements)  # fmt: skip
-        return solve_model(joint.model(self.model), joint.box, loads), joint.source
+        return solve_model(joint.model(self.model), joint.box, loads), _told(joint)
+
+
+def _told(joint: Joint) -> str:
+    """What was fitted, and what a user must know of it."""
+    return "\n".join([joint.source, *(f"note: {note}" for note in joint.notes)])
 
 
 def read_loads(path: Path) -> FloatArray:
-    """(n, 3) force x, y [N] and moment [N m]. Raises FileNotFoundError, or InputError naming the line."""
-    if not path.is_file():
-        raise FileNotFoundError(f"no loads file {path}")
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{path} is no CSV: {error}") from error
-    header = [name.strip() for name in rows[0]] if rows else []
+    """(n, 3) force x, y [N] and moment [N m]. Raises FileNotFoundError, or InputError naming column and row."""
+    header, rows = read_rows(path)
     for name in LOADS:
         if name not in header:
             raise InputError(f"{path}: no column {name}; the header must name {', '.join(LOADS)}, units included")
-    columns = [header.index(name) for name in LOADS]
-    values = np.empty((len(rows) - 1, 3))
-    for i, row in enumerate(rows[1:]):
-        for j, column in enumerate(columns):
-            cell = row[column] if column < len(row) else ""
-            try:
-                values[i, j] = float(cell)
-            except ValueError:
-                values[i, j] = np.nan
-            if not math.isfinite(values[i, j]):
-                raise InputError(f"{path}, row {i + 1}: {LOADS[j]} = {cell!r} is no finite number")
-    if not len(values):
-        raise InputError(f"{path}: no loads below the header")
-    return values * [1, 1, 1e-3]
+    values = np.array([[number_of(row[header.index(name)], f"{path}: row {i}, {name}") for name in LOADS]
+                       for i, row in enumerate(rows, 1)])  # fmt: skip
+    if np.isnan(values).any():
+        row, column = np.argwhere(np.isnan(values))[0]
+        raise InputError(f"{path}: row {row + 1} has no {LOADS[column]}")
+    return np.asarray(values * [1, 1, 1e-3])

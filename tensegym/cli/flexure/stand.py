@@ -64,6 +64,8 @@ class Stand:
             raise FileNotFoundError(f"no folder {self.out.parent} to make {self.out.name} in")
         require_matplotlib()
         hinge = self.options.apply(self.hinge)
+        if abs(hinge.arm - ARM) > 1e-9:
+            raise InputError(f"arm = {1e3 * hinge.arm:g} mm: the arm of the stand in PyBullet is {1e3 * ARM:g} mm")
         joint = fit_joint(hinge, max_angle=self.box.max_angle, max_force=self.box.max_force_N, held_out=0)
         if not 0 < math.radians(self.release_deg) <= joint.box.max_angle:
             limit = math.degrees(joint.box.max_angle)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 import numpy as np
 
 from tensegym.cli.options import Seed, Within
+from tensegym.errors import InputError
 from tensegym.flexure.fem.arm_sweep import arm_sweep
 from tensegym.flexure.fem.sampling import HELD_OUT_SEED
-from tensegym.flexure.hinge import PAPER_HINGES
+from tensegym.flexure.hinge import PAPER_HINGES, Hinge
 from tensegym.flexure.models.joint import MODELS, Joint
 from tensegym.flexure.models.joint_file import joint_to_dict
 from tensegym.flexure.models.joint_fit import fit_joint
@@ -57,8 +59,10 @@ class Table:
         data: dict[str, Any] = {"held_out_seed": HELD_OUT_SEED, "seed": self.seed, "hinges": {}}
         data["table_angle_deg"] = self.table_angle_deg
         first, second, third, fourth = [], [], [], []
+        notes: list[str] = []
         for name in self.hinges:
             hinge = self.options.apply(name)
+            notes += load_notes(hinge, name, self.table_angle_deg, self.box.max_angle_deg)
             joint = fit_joint(hinge, max_angle=self.box.max_angle, max_force=self.box.max_force_N, count=self.states,
                               held_out=self.held_out, seed=self.seed)  # fmt: skip
             texts.append(joint.source)
@@ -74,11 +78,12 @@ class Table:
             errors = joint_to_dict(joint)["errors"]
             data["hinges"][name] = {"source": joint.source, "table_1": facts, "errors": errors, "loop_work": work,
                                     "table_2_s": {"fem": times.fem, "potential": times.potential, "paper": paper},
-                                    "max_angle_rad": joint.box.max_angle,
+                                    "arm_m": hinge.arm, "max_angle_rad": joint.box.max_angle,
                                     "max_force_N": joint.box.max_force}  # fmt: skip
         texts += [
             f"\nTable 1: where the springs stand; force in base y at the arm's end, +-{self.table_angle_deg:g} deg",
             table(["hinge", "whose", "lambda", "a", "b", "dx mm", "dy mm"], first),
+            *notes,
             dx_note(data["hinges"]),
             "\nTable 2: time of one model run in the paper [s], and of a 60-point sweep here, warm, one thread",
             table(["hinge", "SPACAR s", "paper's model s", "our FEM ms", "potential us", "ratio"], second),
@@ -88,6 +93,20 @@ class Table:
             table(["hinge", "model", "largest", "median"], fourth),
         ]  # fmt: skip
         return Report("\n".join(texts), data)
+
+
+def load_notes(hinge: Hinge, name: str, angle_deg: float, max_angle_deg: float | None) -> list[str]:
+    """What is not as Table 1's heading has it for one hinge. Raises InputError where the paper's row would mislead."""
+    notes = []
+    if not hinge.arm:
+        if name in PAPER_TABLE_1:
+            raise InputError(f"{name} with arm_mm = 0: without an arm a pure moment turns it, and its row is of "
+                             "another load than the paper's Table 1; give an arm above 0")  # fmt: skip
+        notes.append(f"{name} has no arm: its rows are of a pure moment")
+    largest = math.degrees(hinge.max_angle) if max_angle_deg is None else max_angle_deg
+    if largest < angle_deg:
+        notes.append(f"{name}: its rows are of +-{largest:.4g} deg, its range")
+    return notes
 
 
 def table_1(joint: Joint, name: str, angle: float) -> tuple[list[list[Any]], dict[str, Any]]:

@@ -14,7 +14,8 @@ from tensegym.cli.options import Within
 from tensegym.errors import FlexureError, InputError
 from tensegym.files import replace_file
 from tensegym.flexure.measured.base_frame import BaseFrame, frame_at_rest
-from tensegym.flexure.measured.measured_file import quantity, read_rows
+from tensegym.flexure.measured.csv_rows import read_rows
+from tensegym.flexure.measured.measured_file import quantity
 from tensegym.flexure.measured.photo import draw_overlay, read_grey
 from tensegym.flexure.measured.sighting import Sighting, sight
 from tensegym.report import Report, table

@@ -10,12 +10,12 @@ end A, x along the undeformed arm):
     Fx, Fy               instead of ``force``: components at the arm's end
     torque (also Mz)     moment about the tip; the forces beside it, if any, then act at the tip (as `solve` counts)
 
-An empty cell was not measured. Columns that name none of these quantities (``image``, notes) are passed over.
+An empty cell was not measured. Columns that name none of these quantities (``image``, notes) are passed over. Columns
+may stand between semicolons or tabs, with decimal commas (csv_rows.py).
 """
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from pathlib import Path
@@ -25,6 +25,8 @@ import numpy as np
 from tensegym.arrays import FloatArray
 from tensegym.errors import InputError
 from tensegym.flexure.hinge import States
+
+from .csv_rows import number_of, read_rows
 
 PAPER_LENGTH, ARM_LENGTH = 0.04, 0.12
 """The paper's hinges from base to tip, and its arm beyond the tip [m]"""
@@ -61,29 +63,17 @@ def quantity(header: str) -> tuple[str, float] | None:
     raise InputError(f"column {header.strip()!r} {fault}; write {' or '.join(f'{word}_{unit}' for unit in units)}")
 
 
-def read_rows(path: Path) -> tuple[list[str], list[list[str]]]:
-    """Header and rows of a CSV, blank lines left out.
-
-    Raises InputError for a file that is empty, no text, or has a row of another width than its header.
-    """
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            lines = [line for line in csv.reader(file) if any(cell.strip() for cell in line)]
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{path}: not a CSV text file") from error
-    if len(lines) < 2:
-        raise InputError(f"{path}: no rows below the header" if lines else f"{path}: empty")
-    for number, line in enumerate(lines[1:], 1):
-        if len(line) != len(lines[0]):
-            raise InputError(f"{path}: row {number} has {len(line)} cells, the header {len(lines[0])}")
-    return lines[0], lines[1:]
-
-
 def read_measured(path: Path, arm_length: float = ARM_LENGTH) -> States:
-    """States measured on a stand whose arm's end is ``arm_length`` [m] beyond the tip.
+    """States measured on a stand.
 
-    Raises InputError, one line naming file, column and row: a unit missing or unknown, a column missing, given twice or
-    half a pair, a cell that is no number, an angle not measured, loads that say nothing.
+    Args:
+        path: of the CSV.
+        arm_length: from the tip to the arm's end, where ``force``, ``Fx`` and ``Fy`` act [m].
+
+    Raises:
+        FileNotFoundError: where it is not there.
+        InputError: naming file, column and row: a unit missing or unknown, a column missing, given twice or half a
+            pair, a cell that is no number, an angle not measured or past a quarter turn, loads that say nothing.
     """
     header, rows = read_rows(path)
     columns: dict[str, FloatArray] = {}
@@ -97,21 +87,10 @@ def read_measured(path: Path, arm_length: float = ARM_LENGTH) -> States:
         name, unit = known
         if name in columns:
             raise InputError(f"{path}: {name} is given twice")
-        columns[name] = unit * np.array([_number(row[k], f"{path}: row {n}, {title}") for n, row in enumerate(rows, 1)])
+        values = [number_of(row[k], f"{path}: row {n}, {title}") for n, row in enumerate(rows, 1)]
+        columns[name] = unit * np.array(values)
     _refuse_gaps(path, columns)
     return _states(columns, len(rows), arm_length)
-
-
-def _number(cell: str, where: str) -> float:
-    if not cell.strip():
-        return math.nan
-    try:
-        value = float(cell)
-    except ValueError:
-        value = math.inf
-    if not math.isfinite(value):
-        raise InputError(f"{where}: {cell.strip()!r} is not a number")
-    return value
 
 
 def _refuse_gaps(path: Path, columns: dict[str, FloatArray]) -> None:
@@ -119,6 +98,10 @@ def _refuse_gaps(path: Path, columns: dict[str, FloatArray]) -> None:
         raise InputError(f"{path}: no column angle_deg or angle_rad")
     if np.isnan(columns["angle"]).any():
         raise InputError(f"{path}: row {int(np.isnan(columns['angle']).argmax()) + 1} has no angle")
+    if (past := np.abs(columns["angle"]) >= math.pi / 2).any():
+        row, angle = int(past.argmax()), columns["angle"][past.argmax()]
+        raise InputError(f"{path}: row {row + 1}: an angle of {math.degrees(angle):.4g} deg; a hinge turns less than "
+                         "90 deg: is the column in degrees under a header in rad?")  # fmt: skip
     for one, other in (("x", "y"), ("Fx", "Fy")):
         if (one in columns) != (other in columns):
             lone, missing = (one, other) if one in columns else (other, one)

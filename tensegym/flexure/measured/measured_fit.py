@@ -2,35 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
 from tensegym.flexure.hinge import States
 from tensegym.flexure.models.certificate import certify
 from tensegym.flexure.models.joint import Joint
 from tensegym.flexure.models.model_error import model_errors
-from tensegym.flexure.models.planar_spring import PlanarSpring, fit_planar
 from tensegym.flexure.models.potential import Potential
 from tensegym.flexure.models.potential_terms import mask_of
-from tensegym.flexure.models.torsion_spring import TorsionSpring, fit_torsion
 
-from .coefficient import Coefficient, judge
+from .coefficient import Coefficient
 from .measured_file import ARM_LENGTH, read_measured
 from .noisy_fit import box_of, fit_noisy, moment_scale_of
+from .plausibility import check_measured
+from .spring_fit import Spring, fit_spring, fit_turning
 
 MODELS = ("potential", "planar", "torsion")
-
-_Spring = PlanarSpring | TorsionSpring
-_SPRINGS: dict[str, tuple[Callable[[States, float], _Spring], dict[str, str]]] = {
-    # model: how it is fitted, and its coefficients: field -> name with the unit
-    "planar": (fit_planar, {"b": "b", "kx": "kx_N_per_m", "ky": "ky_N_per_m", "kz": "kz_Nm_per_rad"}),
-    "torsion": (fit_torsion, {"fraction": "lambda", "stiffness": "k_Nm_per_rad"}),
-}
 
 
 @dataclass(frozen=True)
@@ -41,7 +32,7 @@ class MeasuredFit:
     """Of MODELS."""
     joint: Joint
     states: States
-    """The states with every component measured: those that were fitted."""
+    """Those that were fitted: with every component measured, or without any tip."""
     coefficients: tuple[Coefficient, ...]
     """Dimensionless for the potential, else with the unit in the name."""
     noise: tuple[float, float] | None
@@ -53,11 +44,21 @@ class MeasuredFit:
         return tuple(c for c in self.coefficients if c.doubt)
 
 
-def fit_file(path: Path, length: float, model: str = "potential", *, arm_length: float = ARM_LENGTH,
-             symmetry: str = "both") -> MeasuredFit:  # fmt: skip
-    """Fit ``model`` to the CSV ``path`` (see measured.py) of a hinge of rest length L [m].
+def fit_file(
+    path: Path, length: float, model: str = "potential", *, arm_length: float = ARM_LENGTH, symmetry: str = "both"
+) -> MeasuredFit:
+    """Fit a model to a CSV of measured states; see measured_file.py.
 
-    Raises InputError for what the file lacks, FlexureError as ``fit_measured``, both naming the file.
+    Args:
+        path: of the CSV.
+        length: rest length L of the hinge [m].
+        model: of MODELS.
+        arm_length: of the stand, from the tip to where the force acts [m].
+        symmetry: both, axis or none; see ``symmetry_of``.
+
+    Raises:
+        InputError: for what the file lacks.
+        FlexureError: as ``fit_measured``, naming the file.
     """
     states = read_measured(path, arm_length)
     try:
@@ -66,58 +67,43 @@ def fit_file(path: Path, length: float, model: str = "potential", *, arm_length:
         raise FlexureError(f"{path}: {error}") from None
 
 
-def fit_measured(states: States, length: float, model: str = "potential", *, symmetry: str = "both",
-                 source: str = "measured") -> MeasuredFit:  # fmt: skip
-    """Fit ``model`` to measured states of a hinge of rest length L [m]; states not whole are passed over.
+def fit_measured(
+    states: States, length: float, model: str = "potential", *, symmetry: str = "both", source: str = "measured"
+) -> MeasuredFit:
+    """Fit a model to measured states; the torsion spring also where no tip was measured.
 
-    symmetry: as ``fit_potential``. Raises FlexureError on an unknown model, fewer states than coefficients, states
-    without rotation or load, a moment that turns against the angle, a potential that is not passive on the states' box.
+    Args:
+        states: those that are not whole are passed over, but for a torsion spring without tips.
+        length: rest length L of the hinge [m].
+        model: of MODELS.
+        symmetry: both, axis or none; see ``symmetry_of``.
+        source: says in the joint what was fitted.
+
+    Raises:
+        FlexureError: on an unknown model, states that this hinge cannot have (plausibility.py), fewer states than
+            coefficients, states without rotation or load, a potential that is not passive on the states' box.
     """
     if model not in MODELS:
         raise FlexureError(f"model = {model!r} cannot be fitted to data; one of {', '.join(MODELS)}")
-    whole = states.whole()
-    enough = len(whole) >= mask_of(symmetry).sum()
-    rich = fit_noisy(whole, length, symmetry=symmetry) if enough or model == "potential" else None
-    fitted: Potential | _Spring
-    if rich is not None and model == "potential":
-        certify(rich.potential)
-        fitted, coefficients = rich.potential, rich.coefficients
+    check_measured(states, length)
+    used, rich = states.whole(), None
+    fitted: Potential | Spring
+    if not np.isfinite(states.tip).any():
+        if model != "torsion":
+            raise FlexureError("no tip (x, y) was measured: angles and loads alone give the torsion model; fit torsion")
+        used = states.pick(np.isfinite(states.force).all(1) & np.isfinite(states.moment))
+        fitted, coefficients = fit_turning(used, length)
     else:
-        fitted, coefficients = _fit_spring(whole, length, model)
-    errors = {model: model_errors(fitted, whole, moment_scale_of(whole, length))}
+        if len(used) >= mask_of(symmetry).sum() or model == "potential":
+            rich = fit_noisy(used, length, symmetry=symmetry)
+        if rich is not None and model == "potential":
+            certify(rich.potential)
+            fitted, coefficients = rich.potential, rich.coefficients
+        else:
+            fitted, coefficients = fit_spring(used, length, model)
+    errors = {model: model_errors(fitted, used, moment_scale_of(used, length))}
     notes = tuple(f"{c.name} is not identified: {c.doubt}" for c in coefficients if c.doubt)
     joint = Joint(
-        source, length, box_of(whole, length), {model: fitted}, errors, "the fitted measured states", notes=notes
+        source, length, box_of(used, length), {model: fitted}, errors, "the fitted measured states", notes=notes
     )
-    return MeasuredFit(model, joint, whole, coefficients, (rich.tip_noise, rich.moment_noise) if rich else None)
-
-
-def _fit_spring(whole: States, length: float, model: str) -> tuple[_Spring, tuple[Coefficient, ...]]:
-    fit, fields = _SPRINGS[model]
-    if len(whole) < len(fields):
-        raise FlexureError(
-            f"{len(whole)} states with angle, tip and load for the {len(fields)} coefficients of {model}"
-        )
-    spring = fit(whole, length)
-    values = np.array([getattr(spring, field) for field in fields])
-    names = list(fields.values())
-    return spring, judge(names, values, np.abs(values), _slopes(spring, list(fields), whole))
-
-
-def _slopes(spring: _Spring, fields: list[str], whole: States) -> FloatArray:
-    """(3n, p) derivative of tip and moment over every coefficient, in units of its value and of the residuals."""
-
-    def answer(joint: _Spring) -> FloatArray:
-        got = joint.poses(whole.theta, whole.force)
-        return np.column_stack([got.tip, got.moment])
-
-    miss = answer(spring) - np.column_stack([whole.tip, whole.moment])
-    used = 1.0 - len(fields) / (3.0 * len(whole))
-    tip, moment = np.sqrt(np.mean(miss[:, :2] ** 2) / used), np.sqrt(np.mean(miss[:, 2] ** 2) / used)
-    spread = np.maximum([tip, tip, moment], 1e-12)
-    columns = []
-    for field in fields:
-        value, step = getattr(spring, field), 1e-4
-        more, less = (answer(replace(spring, **{field: value * (1.0 + sign * step)})) for sign in (1.0, -1.0))
-        columns.append(((more - less) / (2.0 * step * spread)).ravel())
-    return np.stack(columns, axis=1)
+    return MeasuredFit(model, joint, used, coefficients, (rich.tip_noise, rich.moment_noise) if rich else None)

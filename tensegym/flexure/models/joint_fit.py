@@ -56,6 +56,8 @@ def fit_joint(
     certify(fit.potential)
     models: dict[str, Model] = {"potential": fit.potential, "planar": fit_planar(states, hinge.length)}
     notes = [f"the states cannot tell {', '.join(fit.unidentified)}"] if fit.unidentified else []
+    if not hinge.arm:
+        notes.append("no arm: stiffness diagrams and torsion spring are fitted to a pure moment's sweep")
     sweep = arm_sweep(hinge, box.max_angle, elements=elements)
     for name, (fit_model, title) in _OF_THE_SWEEP.items():
         try:

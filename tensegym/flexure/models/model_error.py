@@ -48,13 +48,15 @@ def model_errors(model: JointModel, states: States, reference_moment: float) -> 
 
     Args:
         model: what is judged.
-        states: whole ones.
+        states: moments all known; errors of the tip are infinite where no tip was measured.
         reference_moment: unit in which moments count [N m].
     """
     tip, moment = tip_errors(model, states)
-    good = np.isfinite(tip) & np.isfinite(moment)
-    tip, moment = tip[good], moment[good] / reference_moment
-    if not len(tip):
-        return ModelError(np.inf, np.inf, np.inf, np.inf, reference_moment, 0, int((~good).sum()))
-    return ModelError(float(np.sqrt(np.mean(tip**2))), float(tip.max()), float(np.sqrt(np.mean(moment**2))),
-                      float(np.abs(moment).max()), reference_moment, int(good.sum()), int((~good).sum()))  # fmt: skip
+    good = np.isfinite(moment) & (np.isfinite(tip) | ~np.isfinite(states.tip).all(1))
+    tip, moment = tip[good & np.isfinite(tip)], moment[good] / reference_moment
+    lost = int((~good).sum())
+    if not good.any():
+        return ModelError(np.inf, np.inf, np.inf, np.inf, reference_moment, 0, lost)
+    of_tip = (float(np.sqrt(np.mean(tip**2))), float(tip.max())) if len(tip) else (np.inf, np.inf)
+    return ModelError(*of_tip, float(np.sqrt(np.mean(moment**2))), float(np.abs(moment).max()), reference_moment,
+                      int(good.sum()), lost)  # fmt: skip

@@ -183,11 +183,12 @@ def test_bad_hinges_are_refused(cli, tmp_path, loads):
 
 @pytest.mark.parametrize(("text", "words"), [
     ("Fx_N,Fy_N,Mz\n0,0,0\n", ("no column Mz_Nmm", "units")),
-    ("Fx_N,Fy_N,Mz_Nmm\n", ("no loads",)),
-    ("", ("no column Fx_N",)),
-    ("Fx_N,Fy_N,Mz_Nmm\n0,zero,0\n", ("row 1", "Fy_N = 'zero'")),
-    ("Fx_N,Fy_N,Mz_Nmm\n0,0,0\n0,1\n", ("row 2", "Mz_Nmm = ''")),
-    ("Fx_N,Fy_N,Mz_Nmm\n0,nan,0\n", ("Fy_N = 'nan'",)),
+    ("Fx_N,Fy_N,Mz_Nmm\n", ("no rows below the header",)),
+    ("", ("empty",)),
+    ("Fx_N,Fy_N,Mz_Nmm\n0,zero,0\n", ("row 1", "Fy_N: 'zero' is not a number")),
+    ("Fx_N,Fy_N,Mz_Nmm\n0,0,0\n0,1\n", ("row 2 has 2 cells, the header 3",)),
+    ("Fx_N,Fy_N,Mz_Nmm\n0,nan,0\n", ("Fy_N: 'nan' is not a number",)),
+    ("Fx_N,Fy_N,Mz_Nmm\n0,0,0\n0,,1\n", ("row 2 has no Fy_N",)),
 ])  # fmt: skip
 def test_bad_loads_are_refused(cli, tmp_path, text, words):
     loads, out = tmp_path / "loads.csv", tmp_path / "out.csv"
@@ -203,7 +204,7 @@ def test_solve_needs_one_source_and_a_known_model(cli, joint_file, loads, tmp_pa
     assert_refused(cli("flexure", "solve", "--hinge", "tfch", "--model", "beam", *out), "model = 'beam'; one of fem")
     assert_refused(cli("flexure", "solve", "--joint", tmp_path / "none.json", *out), "no joint file")
     result = cli("flexure", "solve", "--hinge", "tfch", "--loads", tmp_path / "no.csv", "--out", tmp_path / "o.csv")
-    assert_refused(result, "no loads file")
+    assert_refused(result, "no file")
 
 
 def test_curves_refuse_data_of_an_unknown_hinge(cli, tmp_path):
@@ -229,3 +230,29 @@ def test_spoilt_joint_files_are_refused(joint_file, tmp_path, spoil, words):
     path.write_text(json.dumps(data))
     with pytest.raises(FlexureError, match=words):
         load_joint(path)
+
+
+@pytest.mark.parametrize(("options", "words"), [
+    (("table", "--arm-mm", 0), ("x-hinge with arm_mm = 0", "pure moment", "Table 1")),
+    (("table", "--table-angle-deg", 120), ("table_angle_deg = 120", "(0, 90)")),
+    (("stand", "leaf-spring", "--arm-mm", 100, "--out", "OUT"), ("arm = 100 mm", "120 mm")),
+    (("fit", "tfch", "--model", "planar", "--out", "OUT"), ("--model has no effect without --data",)),
+    (("fit", "--data", "none.csv", "--thickness-mm", 1, "--out", "OUT"), ("--thickness-mm has no effect with --data",)),
+    (("fit", "tfch", "--data", "none.csv", "--max-force-N", 1, "--out", "OUT"), ("--max-force-N has no effect",)),
+    (("solve", "--joint", "JOINT", "--thickness-mm", 1, "--loads", "LOADS", "--out", "OUT"), ("--thickness-mm",)),
+    (("solve", "--hinge", "tfch", "--max-angle-deg", 9, "--loads", "LOADS", "--out", "OUT"), ("--max-angle-deg has",)),
+], ids=lambda value: value[0] if isinstance(value[0], str) and len(value) > 1 else "")  # fmt: skip
+def test_no_option_means_something_else_than_its_name(cli, options, words, joint_file, loads, tmp_path):
+    paths = {"OUT": tmp_path / "o", "JOINT": joint_file, "LOADS": loads}
+    assert_refused(cli("flexure", *(paths.get(option, option) for option in options)), *words)
+    assert not (tmp_path / "o").exists()
+
+
+def test_the_load_of_a_hinge_without_an_arm_is_said(cli, tmp_path):
+    status, out, _ = cli("flexure", "table", "--hinges", "parallel-guide", "--loops", 2, "--held-out", 10)
+    assert status == 0
+    assert "parallel-guide has no arm: its rows are of a pure moment" in out
+    assert "parallel-guide: its rows are of +-0.01 deg, its range" in out
+    joint = fit_joint(preset("parallel-guide"), held_out=0)
+    assert any("pure moment" in note for note in joint.notes)
+    assert not any("pure moment" in note for note in fit_joint(preset("tfch"), held_out=0).notes)

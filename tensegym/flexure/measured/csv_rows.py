@@ -1,0 +1,68 @@
+"""Rows of a CSV as people's programs write them: commas, semicolons or tabs between, decimal points or commas."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import re
+from pathlib import Path
+
+from tensegym.errors import InputError
+
+LARGEST = 20_000_000  # bytes
+_COMMA = re.compile(r"[+-]?\d*,\d+(e[+-]?\d+)?", re.IGNORECASE)
+
+
+def read_rows(path: Path) -> tuple[list[str], list[list[str]]]:
+    """Header and rows of a CSV, blank lines and empty columns at the end left out.
+
+    Columns stand between semicolons or tabs where the header has one, else between commas; with semicolons or tabs a
+    number may have a decimal comma, which comes back as a point.
+
+    Args:
+        path: of the file, UTF-8 with or without a byte order mark.
+
+    Raises:
+        FileNotFoundError: where it is not there.
+        InputError: for a file that is empty, no text, too large, or has a row of another width than its header.
+    """
+    if not path.is_file():
+        raise FileNotFoundError(f"no file {path}")
+    if path.stat().st_size > LARGEST:
+        raise InputError(f"{path}: {path.stat().st_size / 1e6:.0f} MB; {LARGEST / 1e6:.0f} MB is the most")
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+        first = next((line for line in text.splitlines() if line.strip()), "")
+        between = ";" if ";" in first else "\t" if "\t" in first else ","
+        cells = csv.reader(io.StringIO(text, newline=""), delimiter=between)
+        lines = [[cell.strip() for cell in line] for line in cells]
+        lines = [line for line in lines if any(line)]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{path}: not a CSV text file") from error
+    if len(lines) < 2:
+        raise InputError(f"{path}: no rows below the header" if lines else f"{path}: empty")
+    header, *rows = lines
+    while header and not header[-1] and all(len(row) < len(header) or not row[len(header) - 1] for row in rows):
+        header.pop()
+    out = []
+    for number, row in enumerate(rows, 1):
+        while len(row) > len(header) and not row[-1]:
+            row.pop()
+        if len(row) != len(header):
+            raise InputError(f"{path}: row {number} has {len(row)} cells, the header {len(header)}")
+        out.append([cell.replace(",", ".") if between != "," and _COMMA.fullmatch(cell) else cell for cell in row])
+    return header, out
+
+
+def number_of(cell: str, where: str) -> float:
+    """The finite number of a cell, NaN for an empty one. Raises InputError that begins with ``where``."""
+    if not cell:
+        return math.nan
+    try:
+        value = float(cell) if "_" not in cell else math.inf
+    except ValueError:
+        value = math.inf
+    if not math.isfinite(value):
+        raise InputError(f"{where}: {cell[:60]!r} is not a number")
+    return value
