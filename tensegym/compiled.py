@@ -16,29 +16,26 @@ import pickle
 import shutil
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, TypeVar, overload
+from typing import Any
 
 import llvmlite
 import numba
 import numpy as np
 from numba.core.caching import FunctionCache
 
-Function = TypeVar("Function", bound=Callable[..., Any])
-
 PACKAGE = Path(__file__).parent
 _MARK = b"tensegym.compiled"  # what a source says that has kernels
 
 
-@overload
-def kernel(function: Function) -> Function: ...
-@overload
-def kernel(**options: Any) -> Callable[[Function], Function]: ...
 def kernel(function: Any = None, **options: Any) -> Any:
-    """``@kernel`` or ``@kernel(inline="always", ...)``: `numba.njit` with its options, and the compiled code kept."""
+    """``@kernel`` or ``@kernel(inline="always", ...)``: `numba.njit` with its options, and the compiled code kept.
+
+    To a type checker the compiled function is Any, as numba's own is: its docstring says what goes in and out.
+    """
     if function is None:
         return lambda function: kernel(function, **options)
     dispatcher = numba.njit(**options)(function)

@@ -15,7 +15,7 @@ from tensegym.arrays import FloatArray
 from tensegym.bullet import Articulated, World
 from tensegym.errors import FlexureError
 
-from . import step_kernel as kernel
+from . import step_kernel
 from .energies import Energies
 from .flexible_urdf import ORIGIN, FlexibleUrdf
 from .flexure_joint import FlexureJoint, Outside
@@ -180,14 +180,14 @@ class FlexibleRobot:
     def energies(self) -> Energies:
         """Now, velocities taken at the time of the positions."""
         state = self._stepper
-        kinetic, weight = kernel.kinetic_and_weight(state.tree, state.base, state.positions, self.velocities,
+        kinetic, weight = step_kernel.kinetic_and_weight(state.tree, state.base, state.positions, self.velocities,
                                                     self.gravity)  # fmt: skip
         return Energies(kinetic, weight, sum(flexure.energy for flexure in self.flexures.values()))
 
     def momentum(self) -> FloatArray:
         """(6,) linear momentum [N s] and angular momentum about the world's origin [N m s], now."""
         state = self._stepper
-        return np.asarray(kernel.momentum(state.tree, state.base, state.positions, self.velocities))
+        return np.asarray(step_kernel.momentum(state.tree, state.base, state.positions, self.velocities))
 
     def link_pose(self, link: str) -> tuple[FloatArray, FloatArray]:
         """Position (3,) and rotation matrix (3, 3) of a link's URDF frame in the world."""

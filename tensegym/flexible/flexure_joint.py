@@ -17,7 +17,7 @@ from tensegym.flexure.models.joint import Joint
 from tensegym.flexure.models.joint_file import load_joint
 from tensegym.flexure.models.torsion_spring import TorsionSpring
 
-from . import spring_kernel as kernel
+from . import spring_kernel
 from .springs import Spring, Springs, spring_row
 from .urdf_rewrite import Chain
 
@@ -136,12 +136,12 @@ class FlexureJoint:
     def margin(self) -> float:
         """Distance to the limit of the model: 1 at rest, 0 on the limit, negative outside (spring_kernel.margin)."""
         pose, gradient, _ = self._now()
-        return float(kernel.margin(self.robot.springs, self.row, pose, gradient))
+        return float(spring_kernel.margin(self.robot.springs, self.row, pose, gradient))
 
     def _now(self) -> tuple[FloatArray, FloatArray, float]:
         pose, gradient = np.empty(6), np.empty(6)
-        kernel.pose_of(self.robot.springs, self.row, self.robot.positions, pose)
-        energy = kernel.spring(self.robot.springs, self.row, pose, gradient, np.empty((6, 6)))
+        spring_kernel.pose_of(self.robot.springs, self.row, self.robot.positions, pose)
+        energy = spring_kernel.spring(self.robot.springs, self.row, pose, gradient, np.empty((6, 6)))
         return pose, gradient, float(energy)
 
     def note(self, margin: float, time: float) -> None:

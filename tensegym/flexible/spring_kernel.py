@@ -9,15 +9,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from tensegym.compiled import kernel
 from tensegym.flexure.fem.beam import OPTIONS
 from tensegym.flexure.models import potential_kernel
 
 POTENTIAL, PLANAR, TORSION = range(3)
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def planar(row, x, y, theta, gradient, hessian):
     """PlanarSpring over the tip's pose; row: L, b L, kx, ky, kz. The gradient and Hessian of its V, see planar_spring.
 
@@ -46,7 +46,7 @@ def planar(row, x, y, theta, gradient, hessian):
     return 0.25 * (kx * x * x + ky * y * y + kx * u * u + ky * w * w) + kz * (1 - c)
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def spring(springs, f, pose, gradient, hessian):
     """Energy [J] of joint f at its pose (6,); writes the gradient (6,) and the Hessian (6, 6)."""
     gradient[:], hessian[:] = 0.0, 0.0
@@ -71,7 +71,7 @@ def spring(springs, f, pose, gradient, hessian):
     return energy
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def pose_of(springs, f, q, out):
     """Pose (6,) of joint f at joint positions q (j,)."""
     for k in range(6):
@@ -85,7 +85,7 @@ def pose_of(springs, f, q, out):
         out[0] += springs.rows[f, 0]
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def margin(springs, f, pose, gradient):
     """Distance to the validity limit: the smallest of 1 - |theta| / limit, 1 - |force| / limit on either base axis, and
     for a potential its buckling guard over the guard at rest. 1 at rest, 0 on the limit, negative outside."""
@@ -99,7 +99,7 @@ def margin(springs, f, pose, gradient):
     return least
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def all_springs(springs, q, first, force, stiffness):
     """Gradients and Hessians of every joint at q, in the columns of the whole robot: force (n,), stiffness (n, n).
 
@@ -121,7 +121,7 @@ def all_springs(springs, q, first, force, stiffness):
     return energy
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def damping(springs, q, first, out):
     """B (n, n) = loss time x K(q), of a Kelvin-Voigt material; negative stiffnesses, of pre-stress, take no part."""
     pose, gradient, hessian = np.empty(6), np.empty(6), np.empty((6, 6))

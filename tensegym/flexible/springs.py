@@ -15,7 +15,7 @@ from tensegym.flexure.models.potential import Potential
 from tensegym.flexure.models.stiffness_diagram import StiffnessDiagram
 from tensegym.flexure.models.torsion_spring import TorsionSpring
 
-from . import spring_kernel as kernel
+from . import spring_kernel
 
 Spring = Potential | PlanarSpring | TorsionSpring
 
@@ -42,11 +42,11 @@ class Springs(NamedTuple):
 def spring_row(spring: Spring | StiffnessDiagram) -> tuple[int, list[float]]:
     """Kind and parameters. Raises FlexureError for a model that has no energy."""
     if isinstance(spring, Potential):
-        return kernel.POTENTIAL, [spring.length, spring.moment_scale, spring.angle_scale, 0.0, 0.0]
+        return spring_kernel.POTENTIAL, [spring.length, spring.moment_scale, spring.angle_scale, 0.0, 0.0]
     if isinstance(spring, PlanarSpring):
-        return kernel.PLANAR, [spring.length, spring.b * spring.length, spring.kx, spring.ky, spring.kz]
+        return spring_kernel.PLANAR, [spring.length, spring.b * spring.length, spring.kx, spring.ky, spring.kz]
     if isinstance(spring, TorsionSpring):
-        return kernel.TORSION, [spring.length, spring.fraction * spring.length, spring.stiffness, 0.0, 0.0]
+        return spring_kernel.TORSION, [spring.length, spring.fraction * spring.length, spring.stiffness, 0.0, 0.0]
     raise FlexureError(f"a {type(spring).__name__} is no gradient of an energy: take potential, planar or torsion")
 
 

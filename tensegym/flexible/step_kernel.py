@@ -19,8 +19,8 @@ and be strained by the whole way of the rest of the robot in that step; so conta
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from tensegym.compiled import kernel
 from tensegym.flexure.fem.beam import OPTIONS
 
 from .spring_kernel import all_springs, damping, margin, pose_of, spring
@@ -30,7 +30,7 @@ EXPLICIT, TRAPEZOID = 0, 1
 MOST_ITERATIONS, TOLERANCE = 40, 1e-13  # of Newton; change of a coordinate in one step [m, rad]
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def step_forces(tree, springs, base, q, v, known, drag, hold, stop, gravity, dt, scheme, most, a, out, margins):
     """Generalised forces out (n,) for PyBullet's next step, and the acceleration a (n,) it will give.
 
@@ -84,7 +84,7 @@ def step_forces(tree, springs, base, q, v, known, drag, hold, stop, gravity, dt,
     return -1
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def _margins(springs, q, out):
     pose, gradient, hessian = np.empty(6), np.empty(6), np.empty((6, 6))
     for f in range(len(springs.kind)):
@@ -93,7 +93,7 @@ def _margins(springs, q, out):
         out[f] = margin(springs, f, pose, gradient)
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def add_load(tree, base, q, link, force, point, torque, out):
     """Add to out (n,) a force [N] and torque [N m], world axes, at a point of a link in its own frame [m]; returns the
     point in the world."""
@@ -106,7 +106,7 @@ def add_load(tree, base, q, link, force, point, torque, out):
     return place
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def kinetic_and_weight(tree, base, q, v, gravity):
     """Kinetic energy and that of the weight, zero at the world's origin [J]."""
     size, n = len(tree.parent), len(v)
@@ -121,7 +121,7 @@ def kinetic_and_weight(tree, base, q, v, gravity):
     return 0.5 * v @ (mass @ v), weight
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def momentum(tree, base, q, v):
     """(6,) linear and angular momentum about the world's origin, world axes."""
     size = len(tree.parent)

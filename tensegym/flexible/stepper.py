@@ -11,15 +11,14 @@ from tensegym.arrays import FloatArray
 from tensegym.bullet import Articulated
 from tensegym.errors import SimulationError
 
-from . import contacts
-from . import step_kernel as kernel
+from . import contacts, step_kernel
 from .load import Load
 from .springs import Springs
 from .tree import Tree
 
 Scheme = Literal["trapezoid", "linear", "explicit"]
-SCHEMES = {"trapezoid": (kernel.TRAPEZOID, kernel.MOST_ITERATIONS), "linear": (kernel.TRAPEZOID, 1),
-           "explicit": (kernel.EXPLICIT, 1)}  # fmt: skip
+SCHEMES = {"trapezoid": (step_kernel.TRAPEZOID, step_kernel.MOST_ITERATIONS), "linear": (step_kernel.TRAPEZOID, 1),
+           "explicit": (step_kernel.EXPLICIT, 1)}  # fmt: skip
 SPEED_BOUND = 1e5  # m/s or rad/s
 Pushes = list[tuple[int, list[float], list[float], list[float]]]
 
@@ -98,7 +97,7 @@ class Stepper:
         pushes = []
         for row, load in loads:
             force, point, torque = (np.array(part, float) for part in (load.force, load.point, load.torque))
-            place = kernel.add_load(self.tree, self.base, self.positions, row, force, point, torque, known)
+            place = step_kernel.add_load(self.tree, self.base, self.positions, row, force, point, torque, known)
             pushes.append((row, force.tolist(), place.tolist(), torque.tolist()))
         points = [] if self.ground is None else contacts.candidates(
             self.body, self.ground, self.tree, self.base, self.positions, len(known)
@@ -107,7 +106,7 @@ class Stepper:
         kind, most = SCHEMES[self.scheme]
         for _ in range(contacts.PASSES):
             hold, stop = contacts.holds(points, self.speeds, self.dt, weight)
-            done = kernel.step_forces(
+            done = step_kernel.step_forces(
                 self.tree, self.springs, self.base, self.positions, self.speeds, known, self._drag, hold, stop,
                 self.gravity, self.dt, kind, most, self._acceleration, self._force, self.margins,
             )  # fmt: skip

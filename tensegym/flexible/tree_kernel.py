@@ -10,14 +10,14 @@ PyBullet's own calculateInverseDynamics leaves out how a fixed base is turned, s
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from tensegym.compiled import kernel
 from tensegym.flexure.fem.beam import OPTIONS
 
 FIXED, REVOLUTE, PRISMATIC = range(3)
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def cross(a, b, out):
     """out = a x b."""
     out[0] = a[1] * b[2] - a[2] * b[1]
@@ -25,18 +25,18 @@ def cross(a, b, out):
     out[2] = a[0] * b[1] - a[1] * b[0]
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def _dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def _times(matrix, vector, out):
     for i in range(3):
         out[i] = _dot(matrix[i], vector)
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def turn_about(axis, angle, out):
     """Rotation matrix by ``angle`` about a unit axis."""
     c, s = np.cos(angle), np.sin(angle)
@@ -46,7 +46,7 @@ def turn_about(axis, angle, out):
     out[2, 0], out[2, 1], out[2, 2] = t * x * z - s * y, t * y * z + s * x, t * z * z + c
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def frames(tree, base, q, turns, origins, centres, axes):
     """Where every link is: rotation (l, 3, 3), URDF origin, centre of mass and joint axis (l, 3), in the world.
 
@@ -83,7 +83,7 @@ def frames(tree, base, q, turns, origins, centres, axes):
             centres[i, k] = origins[i, k] + shift[k]
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def _columns(tree, link, point, origins, centres, axes, where, linear, angular):
     """Jacobian columns of a point on a link: their numbers in ``where``, linear and angular (k, 3); returns k."""
     count, arm = 0, np.empty(3)
@@ -117,7 +117,7 @@ def _columns(tree, link, point, origins, centres, axes, where, linear, angular):
     return count
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def generalised(tree, link, point, force, torque, origins, centres, axes, out):
     """Add to out (n,) what a force at a point and a torque on a link do."""
     size = len(tree.parent) + 6
@@ -126,7 +126,7 @@ def generalised(tree, link, point, force, torque, origins, centres, axes, out):
         out[where[c]] += _dot(linear[c], force) + _dot(angular[c], torque)
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def point_velocity(tree, link, point, v, origins, centres, axes, linear, angular):
     """Velocity linear (3,) of a point on a link and its angular velocity (3,), of v (n,)."""
     size = len(tree.parent) + 6
@@ -137,7 +137,7 @@ def point_velocity(tree, link, point, v, origins, centres, axes, linear, angular
         angular += v[where[c]] * turns[c]
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def mass_matrix(tree, turns, origins, centres, axes, out):
     """M (n, n)."""
     size = len(tree.parent) + 6
@@ -155,7 +155,7 @@ def mass_matrix(tree, turns, origins, centres, axes, out):
                 out[where[c], where[d]] += tree.mass[i] * _dot(linear[c], linear[d]) + _dot(spin, angular[d])
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def bias(tree, v, gravity, turns, origins, centres, axes, out):
     """h (n,): the force that holds velocities v (n,) without acceleration, gravity (3,) included."""
     size = len(tree.parent)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from tensegym.compiled import kernel
 
 from .beam import OPTIONS, energy
 from .chain import AX, AY, BX, BY, COS, EA, EI, L0, SIN, condense
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def strain_energy(mesh, mem):
     """Energy of all leaves [J]."""
     total = 0.0
@@ -24,7 +24,7 @@ def strain_energy(mesh, mem):
     return total
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def assemble(mesh, mem):
     """Energy's gradient into right[0], its Hessian into matrix, over the moving bodies; returns negative pivots."""
     negative = 0
@@ -56,7 +56,7 @@ def assemble(mesh, mem):
     return negative
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def add(mem, row, column, k, ax, ay, bx, by):
     """T_a^T k T_b onto the matrix; T takes a body's (x, y, turn) increments to those of a point (ax, ay) from it."""
     c0 = -k[0] * by + k[1] * bx + k[2]
@@ -74,7 +74,7 @@ def add(mem, row, column, k, ax, ay, bx, by):
     matrix[row + 2, column + 2] += -ay * c0 + ax * c1 + c2
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def add_load(mem, row, load, raw, ax, ay):
     """Residual of one end onto its body, and the curvature of the body's turn times the raw force."""
     mem.right[0, row] += load[0]

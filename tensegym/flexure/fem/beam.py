@@ -11,13 +11,14 @@ Non-linear Finite Element Analysis of Solids and Structures, 1991, vol. 1, ch. 7
 from __future__ import annotations
 
 import math
+from typing import Any
 
-from numba import njit
+from tensegym.compiled import kernel
 
-OPTIONS = {"cache": True, "error_model": "numpy", "fastmath": {"contract"}}
+OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def wrapped(angle):
     """The angle in (-pi, pi] [rad]."""
     if -math.pi < angle <= math.pi:
@@ -25,7 +26,7 @@ def wrapped(angle):
     return angle - 2 * math.pi * math.floor((angle + math.pi) / (2 * math.pi))
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def strain(dx, dy, turn1, turn2, l0, cos0, sin0):
     """Chord length, its direction (c, s), end slopes and membrane strain of one element.
 
@@ -39,14 +40,14 @@ def strain(dx, dy, turn1, turn2, l0, cos0, sin0):
     return chord, dx / chord, dy / chord, a1, a2, eps
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def energy(dx, dy, turn1, turn2, l0, cos0, sin0, ea, ei):
     """Strain energy of one element [J]."""
     _, _, _, a1, a2, eps = strain(dx, dy, turn1, turn2, l0, cos0, sin0)
     return 0.5 * ea * l0 * eps * eps + 2 * ei / l0 * (a1 * a1 + a1 * a2 + a2 * a2)
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def element(dx, dy, turn1, turn2, l0, cos0, sin0, ea, ei, axial, out):
     """Gradient and Hessian of the energy over (dx, dy, turn1, turn2), into ``out`` (20,).
 

@@ -7,7 +7,7 @@ whole tangent, which is how instability is seen.
 
 from __future__ import annotations
 
-from numba import njit
+from tensegym.compiled import kernel
 
 from .beam import OPTIONS, element
 
@@ -15,7 +15,7 @@ from .beam import OPTIONS, element
 L0, COS, SIN, EA, EI, AX, AY, BX, BY = range(9)
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def condense(nodes, axial, real, count, held, strains, back, ends, loads):
     """Eliminate the inner nodes of one leaf; returns the number of negative pivots.
 
@@ -134,7 +134,7 @@ def condense(nodes, axial, real, count, held, strains, back, ends, loads):
     return negative
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def recover(nodes, axial, real, count, held, strains, back, first, last):
     """Move the inner nodes by the increments that follow from those of the ends (3,) and renew ``axial``; in place.
 

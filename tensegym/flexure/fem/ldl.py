@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from numba import njit
+from tensegym.compiled import kernel
 
 from .beam import OPTIONS
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def factor(matrix):
     """L D L^T in place without pivoting; returns the negative pivots of all but the last, and whether the last is."""
     size = len(matrix)
@@ -25,7 +25,7 @@ def factor(matrix):
     return negative, matrix[size - 1, size - 1] < 0
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def forward(matrix, right):
     """Solve L z = right in place."""
     for i in range(len(right)):
@@ -33,7 +33,7 @@ def forward(matrix, right):
             right[i] -= matrix[i, k] * right[k]
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def backward(matrix, right):
     """Solve L^T x = right in place."""
     for i in range(len(right) - 1, -1, -1):

@@ -6,9 +6,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from tensegym.arrays import FloatArray
+from tensegym.compiled import kernel
 
 from .beam import OPTIONS
 from .chain import AX, AY, BX, BY, COS, L0, SIN
@@ -34,7 +34,7 @@ class Memory(NamedTuple):
     step: FloatArray
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def memory(mesh):
     """Memory of a hinge at rest."""
     total = 0
@@ -55,7 +55,7 @@ def memory(mesh):
     return new
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def copy_state(source, target):
     """Poses, nodes, axial and holding forces of one memory into another."""
     for i in range(len(source.poses)):  # loops compile ten times faster here than array assignments
@@ -69,7 +69,7 @@ def copy_state(source, target):
         target.held[i] = source.held[i]
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def place_ends(mesh, mem, m):
     """Put the end nodes of leaf m where its bodies carry them."""
     a, b, count, first = mesh.ends[m]

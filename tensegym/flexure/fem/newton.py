@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from tensegym.compiled import kernel
 
 from .assembly import assemble, strain_energy
 from .beam import OPTIONS
@@ -20,7 +20,7 @@ TOLERANCE = 1e-7  # largest increment [rad, element lengths]; Newton converges q
 ITERATIONS = 15
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def newton(mesh, mem, mode, case):
     """Solve for one load case from where ``mem`` is: (converged, multiplier, held stable, free stable, first step).
 
@@ -91,7 +91,7 @@ def newton(mesh, mem, mode, case):
     return False, multiplier, False, False, first_step
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def settle(mesh, mem, mode, case, multiplier):
     """Note what holds a converged state, and its energy."""
     turn = mem.poses[len(mesh.rest) - 1, 2]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from tensegym.compiled import kernel
 
 from .beam import OPTIONS
 from .chain import EA, L0
@@ -20,7 +21,7 @@ LARGEST_DETOUR, SMALLEST_DETOUR = 3.0, 1e-6
 SMALLEST_STEP = 1e-4  # of a path, where it is given up
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def near(mesh, mem, before):
     """Whether two settled states are neighbours on one branch."""
     tip = len(mesh.rest) - 1
@@ -37,7 +38,7 @@ def near(mesh, mem, before):
     return abs(gain - work) <= LARGEST_GAP * (abs(gain) + size) + rounding
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def moved(mesh, mem, before):
     """Largest change of any node, as ``newton`` counts increments [rad, element lengths]."""
     largest = 0.0
@@ -49,7 +50,7 @@ def moved(mesh, mem, before):
     return largest
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def path(mesh, mem, spare, mode, start, target):
     """Follow the states between two load cases: (status, multiplier, fraction reached, free stable).
 
@@ -83,7 +84,7 @@ def path(mesh, mem, spare, mode, start, target):
     return CONVERGED, multiplier, 1.0, free
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def sweep(mesh, mode, cases, from_rest, keep_nodes):
     """Solve for every row of ``cases`` (n, 8) in turn.
 
@@ -140,7 +141,7 @@ def sweep(mesh, mode, cases, from_rest, keep_nodes):
     return results, status, stable, nodes
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def extrapolate(mesh, oldest, older, last, mem):
     """Quadratic extrapolation over three even steps, into ``mem``."""
     for i in range(len(mem.poses)):

@@ -25,8 +25,8 @@ def check_measured(states: States, length: float) -> None:
     Raises:
         FlexureError: naming what was found and what it looks like.
     """
-    _check_tips(states.pick(np.isfinite(states.tip).all(axis=1)), length)
-    loaded = states.pick(np.isfinite(np.column_stack([states.moment, states.force])).all(axis=1))
+    _check_tips(states.pick(np.asarray(np.isfinite(states.tip).all(axis=1))), length)
+    loaded = states.pick(np.asarray(np.isfinite(np.column_stack([states.moment, states.force])).all(axis=1)))
     moved = loaded.tip - [length, 0.0]
     if not loaded.force.any():
         moved = np.zeros_like(moved)

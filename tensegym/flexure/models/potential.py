@@ -12,7 +12,8 @@ from tensegym.errors import FlexureError
 from tensegym.flexure.hinge import Box, States
 from tensegym.flexure.hinge.ranges import check_positive
 
-from . import potential_kernel as kernel
+from . import potential_kernel
+from .potential_kernel import NAMES, RHO, SIGMA
 
 
 @dataclass(frozen=True)
@@ -37,11 +38,11 @@ class Potential:
 
     def __post_init__(self) -> None:
         rows = np.ascontiguousarray(self.coefficients, dtype=float)
-        if rows.ndim != 2 or rows.shape[0] != len(kernel.NAMES) or not np.isfinite(rows).all():
-            raise FlexureError(f"coefficients have shape {rows.shape}; give 8 finite rows: {', '.join(kernel.NAMES)}")
+        if rows.ndim != 2 or rows.shape[0] != len(NAMES) or not np.isfinite(rows).all():
+            raise FlexureError(f"coefficients have shape {rows.shape}; give 8 finite rows: {', '.join(NAMES)}")
         for name in ("length", "moment_scale", "angle_scale"):
             check_positive(name, getattr(self, name))
-        if rows[kernel.RHO, 0] != 0 or rows[kernel.SIGMA, 0] != 0:
+        if rows[RHO, 0] != 0 or rows[SIGMA, 0] != 0:
             raise FlexureError("rho and sigma must have no constant term: the joint rests at (L, 0)")
         object.__setattr__(self, "coefficients", rows)
         object.__setattr__(self, "scales", np.array([self.length, self.moment_scale, self.angle_scale]))
@@ -56,26 +57,26 @@ class Potential:
         Returns:
             Force x, y in base axes [N] and moment about the tip [N m].
         """
-        fx, fy, moment, _ = kernel.wrench(self.coefficients, self.scales, x, y, theta)
+        fx, fy, moment, _ = potential_kernel.wrench(self.coefficients, self.scales, x, y, theta)
         return fx, fy, moment
 
     def energy(self, x: float, y: float, theta: float) -> float:
         """V [J]."""
-        return float(kernel.wrench(self.coefficients, self.scales, x, y, theta)[3])
+        return float(potential_kernel.wrench(self.coefficients, self.scales, x, y, theta)[3])
 
     def stiffness(self, x: float, y: float, theta: float) -> FloatArray:
         """(3, 3) symmetric Jacobian of the wrench over (x, y, theta)."""
         out = np.empty((3, 3))
-        kernel.stiffness(self.coefficients, self.scales, x, y, theta, out)
+        potential_kernel.stiffness(self.coefficients, self.scales, x, y, theta, out)
         return out
 
     def wrenches(self, poses: ArrayLike) -> FloatArray:
         """(n, 3) wrenches of (n, 3) poses x, y, theta."""
-        return np.asarray(kernel.wrench_batch(self.coefficients, self.scales, _table(poses, 3, "poses"))[0])
+        return np.asarray(potential_kernel.wrench_batch(self.coefficients, self.scales, _table(poses, 3, "poses"))[0])
 
     def stiffnesses(self, poses: ArrayLike) -> FloatArray:
         """(n, 3, 3) Jacobians of the wrench at (n, 3) poses x, y, theta."""
-        return np.asarray(kernel.stiffness_batch(self.coefficients, self.scales, _table(poses, 3, "poses")))
+        return np.asarray(potential_kernel.stiffness_batch(self.coefficients, self.scales, _table(poses, 3, "poses")))
 
     def poses(self, theta: ArrayLike, force: ArrayLike) -> States:
         """The states under given rotations and dead forces; explicit, nothing is solved for.
@@ -89,14 +90,14 @@ class Potential:
         """
         angle = np.ascontiguousarray(np.atleast_1d(np.asarray(theta, dtype=float)))
         forces = np.ascontiguousarray(np.broadcast_to(np.asarray(force, dtype=float), (len(angle), 2)))
-        out = kernel.pose_batch(self.coefficients, self.scales, angle, forces)
+        out = potential_kernel.pose_batch(self.coefficients, self.scales, angle, forces)
         self._refuse(angle, forces, out[:, 4])
         return States(angle, out[:, :2], forces, out[:, 2])
 
     def energies(self, states: States) -> FloatArray:
         """(n,) V [J] at the poses of ``states``."""
         poses = np.column_stack([states.tip, states.theta])
-        return np.asarray(kernel.wrench_batch(self.coefficients, self.scales, poses)[1])
+        return np.asarray(potential_kernel.wrench_batch(self.coefficients, self.scales, poses)[1])
 
     def _refuse(self, angle: FloatArray, force: FloatArray, guard: FloatArray) -> None:
         slack = 1 + 1e-9

@@ -14,15 +14,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from tensegym.compiled import kernel
 from tensegym.flexure.fem.beam import OPTIONS
 
 SU, SK, SA, SB, RHO, SIGMA, H, G = range(8)
 NAMES = ("su", "sk", "sa", "sb", "rho", "sigma", "h", "g")
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def horner(row, u):
     """Value, first and second derivative of a polynomial."""
     value, slope, curve = 0.0, 0.0, 0.0
@@ -33,7 +33,7 @@ def horner(row, u):
     return value, slope, 2 * curve
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def at_angle(coefficients, u):
     """su, sk, C, rho, sigma, h, g at u, then their slopes in that order."""
     su, su1, _ = horner(coefficients[SU], u)
@@ -49,7 +49,7 @@ def at_angle(coefficients, u):
     return su, sk, soft, rho, sig, h, g, su1, sk1, soft1, rho1, sig1, h1, g1
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def slope_over_u(at, u, n, p, big_y):
     """dV/du at a fixed e in units of M0; at: of at_angle; n, p: the force in the axes turned by theta / 2; Y."""
     su, sk, _, _, _, _, _, su1, sk1, soft1, rho1, sig1, h1, g1 = at
@@ -57,7 +57,7 @@ def slope_over_u(at, u, n, p, big_y):
             + sk * sk1 * big_y * big_y - sig1 * p)  # fmt: skip
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def wrench(coefficients, scales, x, y, theta):
     """Force x, y [N] in base axes and moment [N m] about the tip that hold it at (x, y) [m], theta; energy [J]."""
     length, moment0, theta0 = scales[0], scales[1], scales[2]
@@ -77,7 +77,7 @@ def wrench(coefficients, scales, x, y, theta):
     return force * (c * n - s * p), force * (s * n + c * p), moment0 * m, energy
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def stiffness(coefficients, scales, x, y, theta, out):
     """Jacobian of the wrench over (x, y, theta) into out (3, 3), symmetric; returns the wrench and the energy."""
     length, moment0, theta0 = scales[0], scales[1], scales[2]
@@ -137,7 +137,7 @@ def stiffness(coefficients, scales, x, y, theta, out):
     return force * (c * vx - s * vy), force * (s * vx + c * vy), moment0 * m, energy
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def pose(coefficients, scales, theta, fx, fy):
     """Tip x, y [m] and the moment [N m] under the dead force (fx, fy) [N] at theta, explicit; energy; K - 2 g n."""
     length, moment0, theta0 = scales[0], scales[1], scales[2]
@@ -157,7 +157,7 @@ def pose(coefficients, scales, theta, fx, fy):
     return length * (c * ex - s * ey), length * (s * ex + c * ey), moment0 * m, energy, guard
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def wrench_batch(coefficients, scales, poses):
     """(n, 3) wrenches of (n, 3) poses x, y, theta, and (n,) energies."""
     out, energy = np.empty((len(poses), 3)), np.empty(len(poses))
@@ -166,7 +166,7 @@ def wrench_batch(coefficients, scales, poses):
     return out, energy
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def stiffness_batch(coefficients, scales, poses):
     """(n, 3, 3) stiffness of (n, 3) poses x, y, theta."""
     out = np.empty((len(poses), 3, 3))
@@ -175,7 +175,7 @@ def stiffness_batch(coefficients, scales, poses):
     return out
 
 
-@njit(**OPTIONS)
+@kernel(**OPTIONS)
 def pose_batch(coefficients, scales, theta, force):
     """(n, 5) tip x, y, moment, energy and K - 2 g n at theta (n,) under force (n, 2)."""
     out = np.empty((len(theta), 5))

@@ -12,7 +12,7 @@ from tensegym.flexure import fem
 from tensegym.flexure.fem import newton
 from tensegym.flexure.fem.path import sweep
 
-from . import potential_kernel as kernel
+from . import potential_kernel
 from .joint import Joint
 from .potential import Potential
 
@@ -56,5 +56,6 @@ def sweep_times(joint: Joint, runs: int = 20, elements: int = fem.ELEMENTS) -> S
     mesh = fem.mesh_of(joint.hinge, elements)
     force = np.ascontiguousarray(sweep(mesh, newton.ROTATION, cases, False, False)[0][:, 3:5])
     slow = best_of(lambda: sweep(mesh, newton.ROTATION, cases, False, False), runs)
-    fast = best_of(lambda: kernel.pose_batch(potential.coefficients, potential.scales, theta, force), 50 * runs)
+    model = (potential.coefficients, potential.scales)
+    fast = best_of(lambda: potential_kernel.pose_batch(*model, theta, force), 50 * runs)
     return SweepTimes(slow, fast)
