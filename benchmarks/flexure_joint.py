@@ -24,12 +24,12 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 import pybullet
-from numba import njit
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 from tensegym.bullet import packaged_urdf
+from tensegym.compiled import kernel
 from tensegym.errors import SimulationError
 from tensegym.flexible.flexible_robot import FlexibleRobot
 from tensegym.flexible.flexure_joint import FlexureJoint
@@ -46,7 +46,7 @@ STEPS = (1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 4e-3)
 SECONDS = 1.0
 
 
-@njit(cache=True)
+@kernel
 def slope(coefficients, scales, state):
     """d/dt (x, y, theta, rates): Newton-Euler of the arm about its centre."""
     fx, fy, moment, _ = wrench(coefficients, scales, state[0], state[1], state[2])

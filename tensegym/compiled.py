@@ -2,8 +2,8 @@
 
 Numba alone keys what it keeps on one file. Kernels inline one another over many, so after a change in one of them it
 would go on with the old physics. Here a folder of compiled code belongs to the sources of all modules with kernels and
-to the versions that compiled them; another one replaces it. A number that a kernel takes from another module
-must come from one that is counted, which has kernels itself.
+to the versions that compiled them; another one replaces it. Modules count whose text names this one: those with
+kernels, and those without that kernels take a number from.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ import numpy as np
 from numba.core.caching import FunctionCache
 
 PACKAGE = Path(__file__).parent
-_MARK = b"tensegym.compiled"  # what a source says that has kernels
+_MARK = b"tensegym.compiled"  # what a source says that counts
 
 
 def kernel(function: Any = None, **options: Any) -> Any:
@@ -53,7 +53,7 @@ def kernel(function: Any = None, **options: Any) -> Any:
 
 @lru_cache(maxsize=1)
 def sources_hash() -> str:
-    """Of the sources of all modules with kernels and the versions that compile them; found once a process."""
+    """Of the sources of all modules that count and the versions that compile them; found once a process."""
     digest = hashlib.sha256(repr((numba.__version__, llvmlite.__version__, np.__version__)).encode())
     for path in _sources(str(PACKAGE)):
         with open(path, "rb") as file:
@@ -103,7 +103,7 @@ def _user_cache() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/Library/Caches" if apple else "~/.cache"))
 
 
-class _Cache(FunctionCache):
+class _Cache(FunctionCache):  # type: ignore[misc]  # numba is not typed
     """Numba's own, but what cannot be read is compiled, and what cannot be written is not kept."""
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:

@@ -23,8 +23,10 @@ from pathlib import Path
 
 import llvmlite.binding as llvm
 import numpy as np
-from numba import njit, types
+from numba import types
 from numba.extending import intrinsic
+
+from tensegym.compiled import kernel
 
 _WORLD_FRAME, _BASE = 2, -1
 KNOWN_VERSIONS = {"pybullet": ("3.2.7",), "pybullet-arm64": ("3.2.8",)}  # by distribution
@@ -120,14 +122,14 @@ def doubles(_, word):
     return types.CPointer(types.float64)(word), generate
 
 
-@njit(cache=True)
+@kernel
 def client_handle(client, bodies):
     """Handle of a DIRECT client by its number; 0 unless it is connected and holds ``bodies`` bodies."""
     handle = _handle_of(client)
     return handle if handle != 0 and _number_of_bodies(handle) == bodies else 0
 
 
-@njit(cache=True)
+@kernel
 def request_state(handle, body):
     """Ask for a body's state by the interface's own way: address of the status, kind of it, address of the copied state
     (7 numbers of the pose, then the joints'); the last is 0 where the engine knows no such body."""
@@ -138,7 +140,7 @@ def request_state(handle, body):
     return status, _kind_of(status), slot[0]
 
 
-@njit(cache=True)
+@kernel
 def read_states(handle, window, body_ids, two_link_rows, poses, angles):
     """Write poses (k, 7), position and xyzw, of the bodies' first links, and angles (p,) of the pins of the rows
     ``two_link_rows`` (p,); False where the engine knows one of the bodies no more.
@@ -164,7 +166,7 @@ def read_states(handle, window, body_ids, two_link_rows, poses, angles):
     return True
 
 
-@njit(cache=True)
+@kernel
 def push_and_step(handle, body_ids, two_link_rows, poses, wrenches):
     """Give the bodies ``wrenches`` (k + p, 6) as `World.step` does and advance one time step.
 

@@ -16,7 +16,8 @@ moment [N m]. Where its own motion is slow against the step it keeps its explici
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from tensegym.compiled import kernel
 
 from .mobility import mobility_matrix
 from .model import DAMPING, STIFFNESS, TWO_WAY
@@ -26,7 +27,7 @@ _MAX_SWEEPS, _TOLERANCE = 200, 1e-6  # of the implicit solve; changes below 1e-6
 _SLOW = 0.1  # (dt w)^2 and dt c A below which a flexure's row stays explicit; the scheme is stable up to 4
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def explicit_tensions(springs, lengths, rates, natural, tensions):
     """Write the tensions (s,) of the state as it is; springs (s, 9) as in Model."""
     for c in range(len(tensions)):
@@ -37,7 +38,7 @@ def explicit_tensions(springs, lengths, rates, natural, tensions):
         tensions[c] = tension
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def implicit_tensions(model, out, lengths, rates, natural, dt, tensions):
     """Write the tensions (s,) at the end of the step, from the geometry in ``out``; they start from the last step's."""
     springs, mobility, count = model.spring_params, out.mobility, len(lengths)
@@ -81,7 +82,7 @@ def implicit_tensions(model, out, lengths, rates, natural, dt, tensions):
             break
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def tension_wrenches(ends, out, tensions):
     """Write in out.wrenches what tensions (s,) do to the bodies; ends (s, 2) as Model.spring_bodies."""
     wrenches, directions, arms = out.wrenches, out.directions, out.moment_arms

@@ -11,9 +11,9 @@ from __future__ import annotations
 from dataclasses import astuple
 
 import numpy as np
-from numba import njit
 
 from tensegym.arrays import FloatArray
+from tensegym.compiled import kernel
 from tensegym.design.parameters import Drive
 
 from .vectors import KERNEL
@@ -28,12 +28,12 @@ def drive_constants(drive: Drive) -> FloatArray:
     return np.array(astuple(drive), dtype=float)
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def _clip(value, limit):
     return min(max(value, -limit), limit)
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def drive_step(constants, state, tension, dt):
     """Advance one drive by ``dt`` [s] against its cable's ``tension`` [N]; updates ``state`` (8,) in place.
 

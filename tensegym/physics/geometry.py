@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from tensegym.compiled import kernel
 
 from .vectors import KERNEL, cross, rotate, rotation_matrix
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def rotations_of(poses, out):
     """Write the rotation matrices (b, 3, 3) of poses (b, 7), body to world."""
     for b in range(len(poses)):
         rotation_matrix(poses[b, 3:], out[b])
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def points_in_world(poses, rotations, bodies, points, out):
     """Write where points (k, 3) [m] of ``bodies`` (k,), in their frames, stand in the world: out (k, 3) [m]."""
     for p in range(len(bodies)):
@@ -25,7 +26,7 @@ def points_in_world(poses, rotations, bodies, points, out):
             out[p, i] = poses[b, i] + (rotations[b, i, 0] * x + rotations[b, i, 1] * y + rotations[b, i, 2] * z)
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def points_at(poses, bodies, points):
     """The same from poses (b, 7) alone, in an array of its own (k, 3)."""
     rotations, out = np.empty((len(poses), 3, 3)), np.empty((len(bodies), 3))
@@ -34,7 +35,7 @@ def points_at(poses, bodies, points):
     return out
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def span(poses, rotations, ends, params, c):
     """Of cable c: what runs from end a to end b (3,), and both ends from their bodies' centres (3,), world axes [m].
 
@@ -55,7 +56,7 @@ def span(poses, rotations, ends, params, c):
     return (x, y, z), (ax, ay, az), (bx, by, bz)
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def spring_geometry(model, poses, angles, out, lengths):
     """Write the lengths (s,) of all springs, and rotations, directions and moment arms in ``out``.
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from tensegym.compiled import kernel
 
 from .model import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE
 from .split_rods import add_generalised, second_twist
 from .vectors import KERNEL, dot
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def mobility_matrix(model, out):
     """Write out.mobility, A = J M^-1 J^T (s, s) [1/kg], for bodies symmetric about their z axis, the halves of split
     rods moving as their pin allows; from rotations, directions, moment arms and the pins' inertia in ``out``."""
@@ -45,7 +46,7 @@ def mobility_matrix(model, out):
             mobility[d, c] = mobility[c, d]
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def _split_response(model, out):
     """Add what unit tensions do to the halves of split rods."""
     ends, pins, arms, directions = model.spring_bodies, model.pin_bodies, out.moment_arms, out.directions

@@ -17,6 +17,7 @@ from tensegym.arrays import FloatArray, IntArray
 
 from .drives import STATE_SIZE
 
+# What kernels take from here makes this file one of their sources: it is counted by tensegym.compiled.
 # Columns of a spring's parameters
 END_A, END_B, STIFFNESS, DAMPING, TWO_WAY = slice(0, 3), slice(3, 6), 6, 7, 8
 # Columns of a body's parameters; every body is symmetric about its z axis

@@ -8,13 +8,13 @@ the spin of a free rod too.
 
 from __future__ import annotations
 
-from numba import njit
+from tensegym.compiled import kernel
 
 from .model import INVERSE_AXIAL, INVERSE_TRANSVERSE, SPIN_DAMPING
 from .vectors import KERNEL, angular_velocity, cross, dot, sine_ratios, turn
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def bullet_gyroscopic_change(w, axis, across, along, dt):
     """What Bullet adds to the angular velocity w (3,) for the gyroscopic term, world axes.
 
@@ -25,7 +25,7 @@ def bullet_gyroscopic_change(w, axis, across, along, dt):
     return factor * x, factor * y, factor * z
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def turn_bodies(model, state, dt, out):
     """Replace the moments in out.wrenches by those that make Bullet take a leapfrog step under them.
 
@@ -50,7 +50,7 @@ def turn_bodies(model, state, dt, out):
             moment[i] = (across * change[i] + part * axis[i]) / dt
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def _leapfrog(w, axis, across, along, dt, moment):
     """The angular velocity (3,) after a step: I(half a step on) w_new = I(half a step ago) w + dt moment.
 

@@ -15,7 +15,8 @@ matrix M and velocity terms h. (Constraints at the old positions: Ryckaert, Cicc
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from tensegym.compiled import kernel
 
 from .model import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE
 from .split_rods import add_generalised, inertia_times
@@ -24,7 +25,7 @@ from .vectors import KERNEL, angular_velocity, cross, dot, turn
 _MOST_ITERATIONS, _TOLERANCE = 20, 1e-12  # changes of a velocity over (1 + the fastest); each is 1e-2 of the last
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def _spin_momentum(body, z, w, half_step):
     """Angular momentum, as three numbers, at the half step from the own axis z now."""
     middle = turn(z, w, half_step)
@@ -33,7 +34,7 @@ def _spin_momentum(body, z, w, half_step):
     return across * w[0] + part * middle[0], across * w[1] + part * middle[1], across * w[2] + part * middle[2]
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def _composed(w, axis, rate, dt):
     """Angular velocity, as three numbers, of a body turned by axis * rate * dt first and by w * dt then, in one dt."""
     speed = np.sqrt(dot(w, w))
@@ -48,7 +49,7 @@ def _composed(w, axis, rate, dt):
     return factor * vx, factor * vy, factor * vz
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def step_split_rods(model, state, dt, out):
     """Replace the wrenches on the halves of split rods by those that make the engine take a leapfrog step under them:
     force and moment on the first half, a moment along the pin on the second."""
@@ -107,7 +108,7 @@ def step_split_rods(model, state, dt, out):
             wrenches[two, 3 + i] = bend[i]
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def _engine_bias(one, two, geometry, u, out):
     """Write the velocity terms h (7,) of the rod at velocity u, as the engine takes them: at the old state. one, two:
     the halves' parameters (4,)."""

@@ -11,13 +11,14 @@ halves' own z axes, and the velocity of the second centre for a unit rate of the
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from tensegym.compiled import kernel
 
 from .model import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE
 from .vectors import KERNEL, cross, dot, invert, rotate, z_axis
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def inertia_times(body, axis, w):
     """Moment of inertia of a body symmetric about ``axis`` times w (3,), as three numbers; body (4,) its parameters."""
     across, along = 1 / body[INVERSE_TRANSVERSE], 1 / body[INVERSE_AXIAL]
@@ -25,7 +26,7 @@ def inertia_times(body, axis, w):
     return across * w[0] + part * axis[0], across * w[1] + part * axis[1], across * w[2] + part * axis[2]
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def second_poses(model, angles, poses):
     """Write the poses of the second halves into poses (b, 7), from those of the first and the pins' angles (p,)."""
     pins, params = model.pin_bodies, model.pin_params
@@ -43,7 +44,7 @@ def second_poses(model, angles, poses):
             second[i] = first[i] + arm[i] - back[i]
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def split_rod_inertia(model, poses, out):
     """Write the geometry, mass matrix and inverse of every split rod in ``out``."""
     body_params, params = model.body_params, model.pin_params
@@ -79,7 +80,7 @@ def split_rod_inertia(model, poses, out):
         invert(mass, out.pin_work[0], out.pin_work[1], out.pin_inverse[p])
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def add_generalised(geometry, second, force, moment, out):
     """Add to out (7,) a force and a moment about the centre of the first half, or of the second one."""
     r1, r2, axis, _, _, c = geometry
@@ -94,7 +95,7 @@ def add_generalised(geometry, second, force, moment, out):
         out[6] += dot(axis, moment) + dot(c, force)
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def second_twist(geometry, u, out):
     """Write the velocity of the second half's centre and its angular velocity (6,) in the motion u (7,)."""
     r1, r2, axis, _, _, c = geometry

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from tensegym.compiled import kernel
 
 from .cable_law import explicit_tensions, implicit_tensions, tension_wrenches
 from .drives import CURRENT, PULLED, VOLTAGE, drive_step
@@ -18,7 +19,7 @@ from .vectors import KERNEL
 GROUND_TOLERANCE = 1e-3  # m; a foot whose gap to the ground is below this is grounded
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def substep(model, ground, state, out, dt, implicit):
     """Geometry, tensions, wrenches, drives, totals: ``state`` is updated, ``out`` written; out.wrenches are for the
     engine.
@@ -48,7 +49,7 @@ def substep(model, ground, state, out, dt, implicit):
     state.last_poses[:] = state.poses
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def reset_springs(model, state, out):
     """Set lengths, rates and tensions for a state at rest."""
     spring_geometry(model, state.poses, state.angles, out, state.lengths)
@@ -56,7 +57,7 @@ def reset_springs(model, state, out):
     explicit_tensions(model.spring_params, state.lengths, state.rates, state.natural, state.tensions)
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def _wind(model, state, out, dt):
     """Advance the drives under their cables' tensions, and add up what they do and take."""
     totals, drives = state.totals, state.drives
@@ -69,7 +70,7 @@ def _wind(model, state, out, dt):
         totals[ELECTRICAL_ENERGY] += max(0.0, drives[d, CURRENT] * drives[d, VOLTAGE]) * dt
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def _add_paths(model, ground, state, out):
     """Add the horizontal paths of the grounded feet's centres (mean and sum over feet) and of the centre of mass."""
     now, before, totals = out.new_positions, state.node_positions, state.totals

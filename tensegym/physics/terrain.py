@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from scipy.ndimage import gaussian_filter
 
 from tensegym.arrays import FloatArray
+from tensegym.compiled import kernel
 from tensegym.design.parameters import Checked, bounded
 from tensegym.errors import DesignError
 
@@ -78,7 +78,7 @@ class Ground(NamedTuple):
 FLAT = Ground(np.zeros((0, 0)), 1.0)
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def distance_to_ground(point, ground):
     """Signed distance [m] of a point (3,) to the ground, below it negative; nan beyond its edges.
 
@@ -102,7 +102,7 @@ def distance_to_ground(point, ground):
     return (point[2] - (corner + du * u + dv * v)) / np.sqrt(1 + (du * du + dv * dv) / (cell * cell))
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def distances_to_ground(points, ground):
     """Those of points (k, 3): (k,) [m]."""
     out = np.empty(len(points))

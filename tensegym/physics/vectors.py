@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-KERNEL = {"cache": True, "error_model": "numpy"}  # a division by zero gives an infinity and no exception
+from tensegym.compiled import kernel
+
+KERNEL = {"error_model": "numpy"}  # a division by zero gives an infinity and no exception
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def dot(a, b):
     """a . b of vectors (3,)."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def cross(a, b):
     """a x b of vectors (3,), as three numbers."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def rotation_matrix(q, out):
     """Write the rotation matrix (3, 3) of a unit quaternion, body to world."""
     x, y, z, w = q[0], q[1], q[2], q[3]
@@ -35,14 +36,14 @@ def rotation_matrix(q, out):
     out[2, 2] = 1 - 2 * (x * x + y * y)
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def z_axis(q):
     """World direction of a body's own z axis, as three numbers: the last column of its rotation matrix."""
     x, y, z, w = q[0], q[1], q[2], q[3]
     return 2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def rotate(q, v):
     """A vector (3,) turned by a unit quaternion, body to world, as three numbers."""
     x, y, z, w = q[0], q[1], q[2], q[3]
@@ -52,7 +53,7 @@ def rotate(q, v):
     return v[0] + w * tx + y * tz - z * ty, v[1] + w * ty + z * tx - x * tz, v[2] + w * tz + x * ty - y * tx
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def turn(axis, w, time):
     """A vector (3,) turned by the angular velocity w (3,) for ``time`` (Rodrigues), as three numbers."""
     square = dot(w, w)
@@ -63,7 +64,7 @@ def turn(axis, w, time):
             less * z + s * sideways[2] + along * w[2])  # fmt: skip
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def sine_ratios(square):
     """sin(a) / a and (1 - cos(a)) / a^2 of a^2. A body turns by little in a step: below 0.1 rad the series is exact to
     rounding, its first term left out being a^10 / 11! of the whole.
@@ -76,14 +77,14 @@ def sine_ratios(square):
     return np.sin(angle) / angle, (1 - np.cos(angle)) / square
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def arcsine_ratio(square):
     """arcsin(s) / s of s^2 below 0.01; the first term left out is 1.2e-18."""
     high = 35 / 1152 + square * (63 / 2816 + square * (231 / 13312 + square * (143 / 10240)))
     return 1 + square * (1 / 6 + square * (3 / 40 + square * (5 / 112 + square * high)))
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def angular_velocity(pose, last, dt):
     """World angular velocity [rad/s], as three numbers, that took the orientation of the pose ``last`` (7,) to that of
     ``pose`` in ``dt`` [s]."""
@@ -105,7 +106,7 @@ def angular_velocity(pose, last, dt):
     return factor * x, factor * y, factor * z
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def invert(matrix, lower, factor, out):
     """Write the inverse of a symmetric positive definite matrix (n, n), by Cholesky's factor: at n = 7 LAPACK's calls
     cost more. lower, factor (n, n) are workspace."""

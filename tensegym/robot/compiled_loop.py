@@ -5,14 +5,13 @@ What `World.read`, the kernel and `World.step` do in turn, and to the same bits.
 
 from __future__ import annotations
 
-from numba import njit
-
 from tensegym.bullet.c_interface import client_handle, push_and_step, read_states
+from tensegym.compiled import kernel
 from tensegym.physics.substep import substep
 from tensegym.physics.vectors import KERNEL
 
 
-@njit(**KERNEL)
+@kernel(**KERNEL)
 def run(count, engine, model, ground, state, out, dt, implicit):
     """Take ``count`` time steps of a DIRECT client; returns how many were taken.
 

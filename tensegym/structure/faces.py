@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray, IntArray
+from tensegym.compiled import kernel
 from tensegym.errors import StructureError
 
 from .structure import Structure
@@ -123,7 +123,7 @@ def supporting_face(faces: Faces, nodes: FloatArray, centre: FloatArray) -> int:
     return _face_under(faces.triangles, nodes, centre)
 
 
-@njit(cache=True)
+@kernel
 def _face_under(triangles, nodes, centre):
     best, lowest = 0, np.inf
     for t in range(len(triangles)):

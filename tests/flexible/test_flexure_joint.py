@@ -5,15 +5,14 @@ from functools import cache
 
 import numpy as np
 import pytest
-from numba import njit
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 from tensegym.bullet import packaged_urdf
+from tensegym.compiled import kernel
 from tensegym.errors import FlexureError, SimulationError
-from tensegym.flexible import FlexibleRobot, FlexureJoint, Load, load_robot
-from tensegym.flexible import spring_kernel as kernel
+from tensegym.flexible import FlexibleRobot, FlexureJoint, Load, load_robot, spring_kernel
 from tensegym.flexible.springs import spring_table
 from tensegym.flexure import fem
 from tensegym.flexure.hinge import PAPER_HINGES, Box, preset
@@ -74,7 +73,7 @@ def frequency(times, theta):
     return (len(zeros) - 1) / (zeros[-1] - zeros[0])
 
 
-@njit(cache=True)
+@kernel
 def slope(coefficients, scales, state):
     """Newton-Euler of the arm about its centre, written out for the tip: d/dt (x, y, theta, and their rates)."""
     fx, fy, moment, _ = wrench(coefficients, scales, state[0], state[1], state[2])
@@ -221,18 +220,19 @@ def test_gradient_and_hessian_of_every_spring_are_those_of_its_energy():
     for f in range(3):
         pose = np.array([0.039, 0.002, 0.1, 1e-4, 0.01, 0.02]) + 1e-4 * rng.normal(size=6)
         gradient, hessian, spare = np.empty(6), np.empty((6, 6)), np.empty((6, 6))
-        kernel.spring(table, f, pose, gradient, hessian)
+        spring_kernel.spring(table, f, pose, gradient, hessian)
         for k, step in enumerate([1e-7, 1e-7, 1e-5, 1e-7, 1e-5, 1e-5]):
             up, down = pose.copy(), pose.copy()
             up[k], down[k] = pose[k] + step, pose[k] - step
             more, less = np.empty(6), np.empty(6)
-            slope = (kernel.spring(table, f, up, more, spare) - kernel.spring(table, f, down, less, spare)) / (2 * step)
+            rise = spring_kernel.spring(table, f, up, more, spare) - spring_kernel.spring(table, f, down, less, spare)
+            slope = rise / (2 * step)
             assert slope == pytest.approx(gradient[k], rel=1e-5, abs=1e-7)
             np.testing.assert_allclose((more - less) / (2 * step), hessian[:, k], rtol=1e-5, atol=1e-4)
     # the planar spring's energy is planar_spring's own, from its poses under a force
     states = planar.poses(np.array([0.3]), np.array([[0.7, -0.4]]))
     gradient, pose = np.empty(6), np.array([*states.tip[0], 0.3, 0, 0, 0])
-    energy = kernel.spring(table, 1, pose, gradient, np.empty((6, 6)))
+    energy = spring_kernel.spring(table, 1, pose, gradient, np.empty((6, 6)))
     assert energy == pytest.approx(planar.energies(states)[0], rel=1e-12)
     np.testing.assert_allclose(gradient[:3], [0.7, -0.4, states.moment[0]], rtol=1e-10)
 
@@ -253,7 +253,7 @@ def test_the_simpler_models_swing_at_their_own_frequency(kind):
         w = np.sqrt(spring.stiffness / (INERTIA + MASS * (CENTRE + spring.fraction * spring.length) ** 2))
     else:
         pose, gradient, hessian = np.array([spring.length, 0, 0, 0, 0, 0.0]), np.empty(6), np.empty((6, 6))
-        kernel.spring(robot.springs, 0, pose, gradient, hessian)
+        spring_kernel.spring(robot.springs, 0, pose, gradient, hessian)
         mass = np.array([[MASS, 0, 0], [0, MASS, MASS * CENTRE], [0, MASS * CENTRE, INERTIA + MASS * CENTRE**2]])
         w = np.sqrt(np.linalg.eigvals(np.linalg.solve(mass, hessian[:3, :3])).real.min())
     assert frequency(1e-3 * np.arange(1, 1501), np.array(theta)) == pytest.approx(w / (2 * np.pi), rel=1e-3)
