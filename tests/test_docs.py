@@ -15,7 +15,8 @@ def named(text):
     """Whatever stands in backticks and looks like a path of this repository or a module of the package."""
     for name in re.findall(r"`([\w./*-]+)(?:::\w+)?`", text):
         top = name.split("/")[0]
-        if ("/" in name and top in FOLDERS and not re.search(r"-v\d+$", name)) or re.fullmatch(r"tensegym(\.\w+)+", name):  # which is an environment
+        environment = re.search(r"-v\d+$", name)
+        if ("/" in name and top in FOLDERS and not environment) or re.fullmatch(r"tensegym(\.\w+)+", name):
             yield name
 
 
