@@ -1,8 +1,20 @@
 """One root exception; every error is also the builtin a caller would expect."""
 
 
+LONGEST = 300  # characters of a message, whatever stood in the input that it names
+
+
 class TensegymError(Exception):
-    """Root of every error this package raises on purpose."""
+    """Root of every error this package raises on purpose; its text is one line of at most 300 characters."""
+
+    def __str__(self) -> str:
+        return one_line(super().__str__())
+
+
+def one_line(text: str) -> str:
+    """A message without line breaks, the middle of a long one left out."""
+    text = " ".join(text.split())
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 105]} ... {text[-100:]}"
 
 
 class StructureError(TensegymError, ValueError):

@@ -1,6 +1,7 @@
 """What the documents point at is there: files, folders, modules, links."""
 
 import re
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -14,9 +15,9 @@ FOLDERS = {path.name for path in ROOT.iterdir() if path.is_dir()} | {p.name for 
 def named(text):
     """Whatever stands in backticks and looks like a path of this repository or a module of the package."""
     for name in re.findall(r"`([\w./*-]+)(?:::\w+)?`", text):
-        top = name.split("/")[0]
+        path = "/" in name and name.split("/")[0] in FOLDERS
         environment = re.search(r"-v\d+$", name)
-        if ("/" in name and top in FOLDERS and not environment) or re.fullmatch(r"tensegym(\.\w+)+", name):
+        if (path and not environment) or re.fullmatch(r"tensegym(\.\w+)+", name):
             yield name
 
 
@@ -25,11 +26,9 @@ def is_there(name, page):
         return any(list(base.glob(name)) for base in (ROOT, ROOT / "tensegym", page.parent))
     module, _, attribute = name.rpartition(".")
     try:
-        return find_spec(name) is not None
+        return hasattr(import_module(module), attribute) or find_spec(name) is not None
     except ModuleNotFoundError:
-        from importlib import import_module
-
-        return hasattr(import_module(module), attribute)
+        return False
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

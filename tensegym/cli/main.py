@@ -10,7 +10,7 @@ import importlib
 import sys
 from typing import Any
 
-from tensegym.errors import TensegymError
+from tensegym.errors import TensegymError, one_line
 from tensegym.report import Report, to_json
 
 COMMANDS: dict[str, tuple[str, str]] = {
@@ -78,7 +78,7 @@ def run(argv: list[str], commands: dict[str, tuple[str, str]] = COMMANDS, progra
     except BrokenPipeError:
         raise
     except (TensegymError, OSError, UnicodeDecodeError) as error:
-        print(f"{program} {name}: error: {' '.join(str(error).split())}", file=sys.stderr)
+        print(f"{program} {name}: error: {one_line(str(error))}", file=sys.stderr)
         return 2
     print(to_json(report.data) if as_json else report.text)
     return 0 if report.passed else 1

@@ -10,8 +10,8 @@ from scipy.ndimage import gaussian_filter
 
 from tensegym.arrays import FloatArray
 from tensegym.compiled import kernel
-from tensegym.design.parameters import Checked, bounded
 from tensegym.errors import DesignError
+from tensegym.tables import Checked, bounded
 
 from .vectors import KERNEL
 

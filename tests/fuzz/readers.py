@@ -1,0 +1,238 @@
+"""Every reader of a file a user can write, with valid files to start from."""
+
+import io
+import json
+import tomllib
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import tomli_w
+import yaml
+from hypothesis import strategies as st
+
+from tests.fuzz import mutants
+
+ROOT = Path(__file__).parents[2]
+PRISM = """
+name = "prism"
+[structure]
+nodes = [[0.3, 0, 0], [-0.15, 0.26, 0], [-0.15, -0.26, 0], [-0.26, 0.15, 0.5], [0, -0.3, 0.5], [0.26, 0.15, 0.5]]
+rods = [[1, 4], [2, 5], [3, 6]]
+cables = [[1, 2], [2, 3], [3, 1], [4, 5], [5, 6], [6, 4], [1, 6], [2, 4], [3, 5]]
+stiff_cables = [[1, 5], [2, 6]]
+"""
+
+
+class Reader(NamedTuple):
+    """What reads a kind of file."""
+
+    name: str
+    suffix: str
+    read: Callable[[Path], Any]
+    sources: Callable[[], list[bytes]]
+    """Valid files."""
+    load: Callable[[bytes], Any] | None = None
+    """A file as a tree, where it is one."""
+    dump: Callable[[Any], bytes] | None = None
+    neighbours: tuple[Path, ...] = ()
+    """Files that a read file points at; they are copied beside it."""
+
+    def inputs(self) -> st.SearchStrategy[bytes]:
+        """Damaged files."""
+        sources = self.sources()
+        found = mutants.texts(sources)
+        if self.load is None or self.dump is None:
+            return found
+        whole = [self.load(source) for source in sources]
+        return found | mutants.trees(whole).map(self.dump)
+
+
+def to_toml(tree: Any) -> bytes:
+    try:
+        return tomli_w.dumps(_without_none(tree)).encode()
+    except (TypeError, ValueError, AttributeError):  # no TOML says this
+        return repr(tree).encode()
+
+
+def _without_none(tree: Any) -> Any:
+    if isinstance(tree, dict):
+        return {str(key): _without_none(value) for key, value in tree.items()}
+    if isinstance(tree, list):
+        return [_without_none(value) for value in tree]
+    return "none" if tree is None else tree
+
+
+def from_toml(text: bytes) -> Any:
+    return tomllib.loads(text.decode())
+
+
+def to_json(tree: Any) -> bytes:
+    return json.dumps(tree, default=str).encode()
+
+
+def to_yaml(tree: Any) -> bytes:
+    try:
+        return yaml.safe_dump(tree).encode()
+    except yaml.YAMLError:
+        return repr(tree).encode()
+
+
+def _files(*patterns: str) -> list[bytes]:
+    return [path.read_bytes() for pattern in patterns for path in sorted(ROOT.glob(pattern))]
+
+
+# -- one function a kind, so that a reader is imported when it is used ------------------------------------------------
+
+
+def _design(path: Path) -> Any:
+    from tensegym.design.design_file import load_design
+
+    return load_design(path)
+
+
+def _designs() -> list[bytes]:
+    from tensegym.design.design_file import as_design, design_to_dict
+
+    whole = [tomli_w.dumps(design_to_dict(as_design(name))).encode() for name in ("six_rod", "paper")]
+    small = b'preset = "six_rod"\n[elastic_cable]\nstiffness = 400.0\n[payload]\nmass = 0.5\n[drive]\ngear_ratio = 9\n'
+    split = b'preset = "six_rod_flexible"\n[flexure]\nhinge = "x-hinge"\nthickness = 6e-4\nrods = "active"\n'
+    return [*whole, small, small, small, split, PRISM.encode(), b"[structure]\nrod_length = 0.8\nspacing = 0.4\n"]
+
+
+def _task(path: Path) -> Any:
+    from tensegym.search.problem import load_problem
+
+    return load_problem(str(path))
+
+
+def _config(path: Path) -> Any:
+    from tensegym.train.config import load_config
+
+    return load_config(str(path))
+
+
+def _hinge(path: Path) -> Any:
+    from tensegym.flexure.hinge import as_hinge
+
+    return as_hinge(path)
+
+
+def _hinges() -> list[bytes]:
+    from tensegym.flexure.hinge import PRESETS, preset
+    from tensegym.flexure.hinge.hinge_file import hinge_to_toml
+
+    return [hinge_to_toml(preset(name)).encode() for name in PRESETS]
+
+
+def _flexures(path: Path) -> Any:
+    from tensegym.flexible.flexure_file import load_robot
+
+    with load_robot(path):
+        return None
+
+
+def _urdf(path: Path) -> Any:
+    from tensegym.flexible.flexible_urdf import FlexibleUrdf
+
+    return FlexibleUrdf(path, True)
+
+
+def _joint(path: Path) -> Any:
+    from tensegym.flexure import load_joint
+
+    return load_joint(path)
+
+
+@lru_cache(maxsize=1)
+def _joints() -> list[bytes]:
+    from tensegym.flexure import fit_joint, preset
+    from tensegym.flexure.models.joint_file import joint_to_dict
+
+    found = [joint_to_dict(fit_joint(preset(name), held_out=0, count=120)) for name in ("leaf-spring", "x-hinge")]
+    return [json.dumps(joint).encode() for joint in found]
+
+
+def _tips(path: Path) -> Any:
+    from tensegym.control.walker import load_table
+
+    return load_table(path)
+
+
+def _few_tips() -> list[bytes]:
+    rows = json.loads((ROOT / "train/policies/walker/tips.json").read_text())
+    return [json.dumps(rows[:5] if isinstance(rows, list) else rows).encode()]
+
+
+def _commands(path: Path) -> Any:
+    from tensegym.cli.simulate import read_commands
+
+    return read_commands(path, 6)
+
+
+def _command_rows() -> list[bytes]:
+    header = "time_s," + ",".join(f"drive_{d}_rad" for d in range(1, 7))
+    rows = [",".join(map(str, [round(0.1 * n, 3), *[1.5 * n] * 6])) for n in range(6)]
+    return ["\n".join([header, *rows]).encode(), "\r\n".join([header, *rows, ""]).encode()]
+
+
+def _measured(path: Path) -> Any:
+    from tensegym.flexure.measured import fit_measured, read_measured
+
+    return fit_measured(read_measured(path), 0.04, "planar")
+
+
+def _measured_rows() -> list[bytes]:
+    rows = [(a, 40 - 0.002 * a * a, 0.5 * a, 0.02 * a) for a in np.linspace(-25, 25, 11).tolist()]
+    by_force = "angle_deg,x_mm,y_mm,force_N\n" + "\n".join(",".join(f"{v:.5g}" for v in row) for row in rows)
+    by_torque = "angle_deg,x_mm,y_mm,torque_Nmm\n" + "\n".join(",".join(f"{v:.5g}" for v in row) for row in rows)
+    return [by_force.encode(), by_torque.encode()]
+
+
+def _loads(path: Path) -> Any:
+    from tensegym.cli.flexure.solve import read_loads
+
+    return read_loads(path)
+
+
+def _picture(path: Path) -> Any:
+    from tensegym.flexure.measured.photo import read_grey
+    from tensegym.flexure.measured.sighting import sight
+
+    return sight(read_grey(path))
+
+
+def _pictures() -> list[bytes]:
+    from PIL import Image
+
+    grey = np.full((120, 160), 220, np.uint8)
+    grey[50:60, 60:150] = 20
+    grey[52:58, 20:28] = 20
+    found = []
+    for kind in ("PNG", "BMP", "GIF"):
+        file = io.BytesIO()
+        Image.fromarray(grey).save(file, kind)
+        found.append(file.getvalue())
+    return found
+
+
+READERS = {
+    reader.name: reader
+    for reader in (
+        Reader("design", ".toml", _design, _designs, from_toml, to_toml),
+        Reader("task", ".toml", _task, lambda: _files("tensegym/search/tasks/*.toml"), from_toml, to_toml),
+        Reader("training", ".yaml", _config, lambda: _files("train/configs/*.yaml"), yaml.safe_load, to_yaml),
+        Reader("hinge", ".toml", _hinge, _hinges, from_toml, to_toml),
+        Reader("flexures", ".toml", _flexures, lambda: _files("urdf/flexure_*.toml"), from_toml, to_toml,
+               tuple(sorted((ROOT / "urdf").glob("flexure_*.urdf")))),
+        Reader("urdf", ".urdf", _urdf, lambda: _files("urdf/*.urdf")),
+        Reader("joint", ".json", _joint, _joints, json.loads, to_json),
+        Reader("tips", ".json", _tips, _few_tips, json.loads, to_json),
+        Reader("commands", ".csv", _commands, _command_rows),
+        Reader("measured", ".csv", _measured, _measured_rows),
+        Reader("loads", ".csv", _loads, lambda: [b"Fx_N,Fy_N,Mz_Nmm\n0,0.5,10\n-0.5,0.2,-20\n0,0,0\n"]),
+        Reader("picture", ".png", _picture, _pictures),
+    )
+}  # fmt: skip
