@@ -103,7 +103,7 @@ def _user_cache() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/Library/Caches" if apple else "~/.cache"))
 
 
-class _Cache(FunctionCache):  # type: ignore[misc]  # numba is not typed
+class _Cache(FunctionCache):
     """Numba's own, but what cannot be read is compiled, and what cannot be written is not kept."""
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:

@@ -20,7 +20,7 @@ MOST_CELLS = 1000  # from the middle to an edge; the engine then holds four mill
 
 
 @dataclass(frozen=True)
-class Terrain(Checked):
+class Terrain(Checked, error=DesignError):
     """Bumps with the autocorrelation exp(-(r / correlation_length)^2), as surface metrology has Gaussian roughness.
 
     The root mean square slope is sqrt(2) roughness / correlation_length. seed: of the bumps.
