@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Mapping
 from dataclasses import dataclass, is_dataclass, replace
+from importlib import resources
 from typing import Any
 
 import numpy as np
 
 from tensegym.arrays import FloatArray
-from tensegym.errors import DesignError, StructureError
+from tensegym.errors import DesignError, FlexureError, StructureError
+from tensegym.tables import Error, Range, as_text, mapping, one_line, parse_toml, show
 
 from .design import RobotDesign
 
@@ -17,44 +19,21 @@ TRIES = 100  # draws in a row that may all be refused before there is taken to b
 
 
 @dataclass(frozen=True)
-class Range:
-    """Of one field of a design: ``group.field``, from low to high, in equal or (``log``) in equal relative steps."""
-
-    field: str
-    low: float
-    high: float
-    log: bool = False
-
-    def value(self, part: float) -> float:
-        """At a part, 0 to 1, of the way from low to high."""
-        if self.log:
-            return float(self.low * (self.high / self.low) ** part)
-        return float(self.low + part * (self.high - self.low))
-
-    def part(self, value: float) -> float:
-        """Where a value lies, 0 to 1; outside the range, at its nearer end."""
-        value = min(max(value, self.low), self.high)
-        if self.log:
-            return math.log(value / self.low) / math.log(self.high / self.low)
-        return (value - self.low) / (self.high - self.low)
-
-
-@dataclass(frozen=True)
 class Variation:
-    """Ranges over which designs vary about one of them."""
+    """Ranges over which designs vary about one of them, each under its field's name, ``group.field``."""
 
-    ranges: tuple[Range, ...]
+    ranges: Mapping[str, Range]
 
     def place(self, design: RobotDesign) -> FloatArray:
         """(v,) where a design lies in each range, -1 at low to 1 at high: what a policy sees of its robot."""
-        return np.array([2 * r.part(_value(design, r.field)) - 1 for r in self.ranges])
+        return np.array([2 * r.part(_value(design, name)) - 1 for name, r in self.ranges.items()])
 
     def put(self, design: RobotDesign, parts: FloatArray) -> RobotDesign:
         """``design`` with its varied fields at parts (v,), 0 to 1, of their ranges. Raises as RobotDesign does."""
         changes: dict[str, Any] = {}
-        for r, part in zip(self.ranges, parts, strict=True):
-            group, name = r.field.split(".")
-            changes[group] = replace(changes.get(group, getattr(design, group)), **{name: r.value(float(part))})
+        for (name, r), part in zip(self.ranges.items(), parts, strict=True):
+            group, field = name.split(".")
+            changes[group] = replace(changes.get(group, getattr(design, group)), **{field: r.value(float(part))})
         return design.with_(**changes)
 
     def draw(self, design: RobotDesign, rng: np.random.Generator) -> RobotDesign:
@@ -62,44 +41,54 @@ class Variation:
         for _ in range(TRIES):
             try:
                 return self.put(design, rng.uniform(size=len(self.ranges)))
-            except (DesignError, StructureError) as error:
+            except (DesignError, StructureError, FlexureError) as error:
                 refused = error
-        raise DesignError(f"vary: {TRIES} designs drawn from the ranges were all refused, the last one: {refused}")
+        raise DesignError(
+            one_line(f"vary: {TRIES} designs drawn from the ranges were all refused, the last one: {refused}")
+        )
 
 
 def variation(data: Any, design: RobotDesign) -> Variation:
-    """From ``{"elastic_cable.stiffness": {"low": 200.0, "high": 1000.0, "log": True}, ...}``, about a design.
+    """Ranges about a design, from a table or by the name of one that ships with the package.
 
-    Raises DesignError naming the field that the design does not have, or the range that is none.
+    Args:
+        data: ``{"elastic_cable.stiffness": {"low": 200.0, "high": 1000.0, "log": True}, ...}``, or "payload_body".
+        design: the design that the others vary about.
+
+    Raises:
+        DesignError: a field that the design does not have, or a range that is none, by name.
     """
-    if not isinstance(data, dict) or not data:
-        raise DesignError(f"vary = {data!r} must map fields to ranges, as in "
-                          '{"elastic_cable.stiffness": {"low": 200.0, "high": 800.0}}')  # fmt: skip
-    ranges = []
-    for name, spec in data.items():
-        if not isinstance(spec, dict) or not {"low", "high"} <= set(spec) <= {"low", "high", "log"}:
-            raise DesignError(f"vary: {name} = {spec!r} must give low and high, and log or not")
-        low, high, log = spec["low"], spec["high"], spec.get("log", False)
-        numbers = all(isinstance(v, int | float) and not isinstance(v, bool) and math.isfinite(v) for v in (low, high))
-        if not numbers or low >= high or (log and low <= 0):
-            raise DesignError(f"vary: {name} from {low!r} to {high!r} is no range; low must be a number below high"
-                              + (", and above 0 with log" if log else ""))  # fmt: skip
-        ranges.append(Range(name, float(low), float(high), bool(log)))
+    table = named_ranges(data, "vary", DesignError) if isinstance(data, str) else data
+    if not isinstance(table, dict) or not table:
+        raise DesignError(one_line(f"vary = {show(data)} must map fields to ranges, as in "
+                          '{"elastic_cable.stiffness": {"low": 200.0, "high": 800.0}}, or name some'))  # fmt: skip
+    ranges = {name: Range.parse(spec, f"vary: {name}", DesignError) for name, spec in table.items()}
+    for name, r in ranges.items():  # each end by itself: what only a combination breaks is found when it is drawn
         _value(design, name)
-    found = Variation(tuple(ranges))
-    for r in found.ranges:  # each end by itself: what only a combination breaks is found when it is drawn
         for end in (r.low, r.high):
-            group, field = r.field.split(".")
+            group, field = name.split(".")
             replace(getattr(design, group), **{field: end})
-    return found
+    return Variation(ranges)
+
+
+def named_ranges(name: Any, where: str, error: Error) -> dict[str, Any]:
+    """The table of ranges, ``group.field`` to low, high and log, that ships under a name.
+
+    Raises ``error`` with the names there are; ``where`` says what names it.
+    """
+    text = (resources.files("tensegym.design") / "ranges.toml").read_text(encoding="utf-8")
+    shipped = parse_toml(text, "ranges.toml", error)
+    if as_text(name, where, error) not in shipped:
+        raise error(one_line(f"{where} = {show(name)} names no ranges; there are {', '.join(shipped)}"))
+    return mapping(shipped[name], where, error)
 
 
 def _value(design: RobotDesign, name: str) -> float:
     """Of ``group.field``. Raises DesignError where a design has no such number."""
-    group, _, field = name.partition(".")
+    group, _, field = str(name).partition(".")
     held = getattr(design, group, None)
     value = getattr(held, field, None) if is_dataclass(held) and field else None
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise DesignError(f"vary: {name!r} is no number of the design {design.name!r}; give group.field of one it has, "
-                          "such as elastic_cable.stiffness")  # fmt: skip
+        raise DesignError(one_line(f"vary: {show(name)} is no number of the design {design.name!r}; give group.field "
+                          "of one it has, such as elastic_cable.stiffness"))  # fmt: skip
     return float(value)

@@ -27,7 +27,7 @@ def distribution(dimension: Dimension) -> BaseDistribution:
     """A dimension as Optuna has it; a choice is the index into its choices."""
     if dimension.choices:
         return CategoricalDistribution(tuple(range(len(dimension.choices))))
-    return FloatDistribution(dimension.low, dimension.high, log=dimension.log)
+    return FloatDistribution(dimension.range.low, dimension.range.high, log=dimension.range.log)
 
 
 class Asker:

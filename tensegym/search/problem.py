@@ -15,8 +15,7 @@
 
 from __future__ import annotations
 
-import tomllib
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -24,46 +23,67 @@ from typing import Any
 import tomli_w
 
 from tensegym.design.design_file import design_from_dict, design_to_dict
-from tensegym.design.parameters import check_ranges
-from tensegym.errors import DesignError, InputError, StructureError
-from tensegym.tables import Checked, bounded
+from tensegym.errors import DesignError, FlexureError, InputError, StructureError
+from tensegym.tables import (
+    Checked,
+    bounded,
+    choice,
+    fill,
+    known,
+    mapping,
+    noted,
+    one_line,
+    parse_toml,
+    parsed,
+    read_text,
+    show,
+)
 
 from .controllers import check_controller
 from .measure import Bound, Objective
-from .space import Space, Tables, space_from
+from .space import Space, Tables, space_from, written_out
 from .task import Task, task_from
 
 _TABLES = ("task", "design", "controller", "space", "search")
 SAMPLERS = ("cmaes", "tpe", "nsga2", "random")
 
 
+def _objectives(value: Any) -> tuple[Objective, ...]:
+    return tuple(Objective.parse(text) for text in ([value] if isinstance(value, str) else _list(value)))
+
+
+def _constraints(value: Any) -> tuple[Bound, ...]:
+    return tuple(Bound.parse(text) for text in ([value] if isinstance(value, str) else _list(value)))
+
+
+def _list(value: Any) -> list[Any]:
+    if isinstance(value, list):
+        return value
+    raise InputError(f"{show(value)} must be a text or a list of them")
+
+
 @dataclass(frozen=True)
-class Settings:
-    """How to search. batch: trials asked for at a time, a generation of cmaes and nsga2.
+class Settings(Checked, error=InputError):
+    """How to search.
 
     fresh_starts: every batch is tried from other start faces and headings, so that no trial is fitted to a few.
     stop_above: a trial whose loss half way is above this quantile of those before it is stopped.
     """
 
-    sampler: str = "cmaes"
-    objectives: tuple[Objective, ...] = (Objective("speed_lps", True),)
-    constraints: tuple[Bound, ...] = ()
+    sampler: str = choice(*SAMPLERS, what="who proposes the next trials")
+    objectives: tuple[Objective, ...] = parsed(_objectives, (Objective("speed_lps", True),), "made large or small")
+    constraints: tuple[Bound, ...] = parsed(_constraints, (), "what must hold")
     seed: int = bounded(0, 2**31, 0, "", "of the sampler and the episodes")
-    batch: int = bounded(1, 10_000, 16, "", "trials asked for at a time")
+    batch: int = bounded(1, 10_000, 16, "", "trials asked for at a time, a generation of cmaes and nsga2")
     episodes: int = bounded(1, 1000, 4, "", "episodes of a trial")
-    fresh_starts: bool = True
+    fresh_starts: bool = noted(True, "other starts for every batch")
     stop_above: float = bounded(0, 1, 0.6, "", "quantile of the losses half way; 1 stops none")
     sigma: float = bounded(1e-4, 1, 1 / 6, "", "first step of cmaes, as a part of the ranges")
 
     def __post_init__(self) -> None:
-        check_ranges(self)
-        for name in ("seed", "batch", "episodes"):
-            if not isinstance(getattr(self, name), int):
-                raise DesignError(f"Settings.{name} = {getattr(self, name)!r} must be a whole number")
-        if self.sampler not in SAMPLERS:
-            raise DesignError(f"Settings.sampler = {self.sampler!r} is not one of {', '.join(SAMPLERS)}")
+        super().__post_init__()
         if not self.objectives or (self.sampler == "cmaes" and len(self.objectives) > 1):
-            raise DesignError(f"Settings.objectives: {len(self.objectives)} are given; cmaes takes one, others any")
+            raise InputError(f"Settings.objectives: {len(self.objectives)} are given; cmaes takes one, others any")
 
 
 @dataclass(frozen=True)
@@ -80,7 +100,7 @@ class Problem:
         changes = {k: v for k, v in changes.items() if v is not None}
         if not changes:
             return self
-        data = tomllib.loads(self.text)
+        data = parse_toml(self.text, "the task file", InputError)
         data["search"] = data.get("search", {}) | changes
         return problem_from(tomli_w.dumps(data), "the task file with the options given")
 
@@ -94,38 +114,35 @@ def load_problem(name: str) -> Problem:
     shipped = resources.files("tensegym.search") / "tasks"
     names = sorted(p.name.removesuffix(".toml") for p in shipped.iterdir() if p.name.endswith(".toml"))
     if name in names:
-        return problem_from((shipped / f"{name}.toml").read_text(), name)
+        return problem_from((shipped / f"{name}.toml").read_text(encoding="utf-8"), name)
     if not Path(name).is_file():
-        raise FileNotFoundError(f"no task file {name}; give a path, or one of {', '.join(names)}")
-    try:
-        return problem_from(Path(name).read_text(), name)
-    except UnicodeDecodeError as error:
-        raise InputError(f"{name} is not TOML: {error}") from error
+        raise FileNotFoundError(one_line(f"no task file {name}; give a path, or one of {', '.join(names)}"))
+    return problem_from(read_text(name, "task file", InputError), name)
 
 
 def problem_from(text: str, name: str) -> Problem:
     """Parse a task file. Raises InputError naming it."""
+    data = parse_toml(text, name, InputError)
     try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{name} is not TOML: {error}") from error
-    unknown = set(data) - set(_TABLES)
-    if unknown:
-        raise InputError(f"{name}: unknown table {sorted(unknown)[0]!r}; one of {', '.join(_TABLES)}")
-    try:
+        known(data, _TABLES, "the task file", InputError)
         task = task_from(data.get("task"))
         tables = _start(task, data)
-        space = space_from(data.get("space"), tables, _whole(tables))
+        limits = written_out(data.get("space"))
+        if limits != data["space"]:  # in full, so that a search's copy of its file stands alone
+            text = tomli_w.dumps({**data, "space": limits})
+        space = space_from(limits, tables, _whole(tables))
         _check_ends(space)
-        return Problem(task, space, _settings(data.get("search", {})), text)
-    except (DesignError, StructureError, InputError) as error:
-        raise InputError(f"{name}: {error}") from error
+        settings = fill(Settings, data.get("search", {}), "search", InputError)
+        return Problem(task, space, settings, text)
+    except (DesignError, StructureError, FlexureError, InputError) as error:
+        raise InputError(one_line(f"{name}: {error}")) from error
 
 
 def _start(task: Task, data: dict[str, Any]) -> Tables:
-    tables: Tables = {"design": dict(data.get("design", {})), "controller": dict(data.get("controller", {}))}
+    tables: Tables = {name: dict(mapping(data.get(name, {}), name, InputError)) for name in ("design", "controller")}
     if task.payload:
-        tables["design"]["payload"] = {**tables["design"].get("payload", {}), "mass": task.payload}
+        payload = mapping(tables["design"].get("payload", {}), "design.payload", InputError)
+        tables["design"]["payload"] = {**payload, "mass": task.payload}
     return tables
 
 
@@ -141,7 +158,7 @@ def _check_ends(space: Space) -> None:
     """Refuse a range that leaves what its field may be. What only some of the space's designs break is found later."""
     design = design_from_dict(space.tables["design"])
     for dimension in space.dimensions:
-        ends = range(len(dimension.choices)) if dimension.choices else (dimension.low, dimension.high)
+        ends = range(len(dimension.choices)) if dimension.choices else (dimension.range.low, dimension.range.high)
         for value in ends:
             tables = space.apply(space.start | {dimension.name: value})
             group = getattr(design, dimension.path[1], None) if dimension.path[0] == "design" else None
@@ -152,18 +169,6 @@ def _check_ends(space: Space) -> None:
                     replace(group, **{dimension.path[2]: value})  # type: ignore[type-var]
                 else:
                     design_from_dict(tables["design"])
-            except (DesignError, StructureError) as error:
+            except (DesignError, StructureError, FlexureError) as error:
                 shown = dimension.choices[int(value)] if dimension.choices else f"{value:g}"
                 raise InputError(f"[space] {dimension.name!r} at {shown}: {error}") from error
-
-
-def _settings(data: Any) -> Settings:
-    allowed = [f.name for f in fields(Settings)]
-    if not isinstance(data, dict) or set(data) - set(allowed):
-        raise InputError(f"[search] = {data!r}: its fields are {', '.join(allowed)}")
-    values = dict(data)
-    for key, kind in (("objectives", Objective), ("constraints", Bound)):
-        if key in values:
-            texts = [values[key]] if isinstance(values[key], str) else values[key]
-            values[key] = tuple(kind.parse(text) for text in texts)
-    return Settings(**values)

@@ -139,7 +139,7 @@ def _lines(problem: Problem, store: Store, values: dict[str, Any], data: dict[st
     shown = {d.name: (lambda v, d=d: d.choices[int(v)] if d.choices else v) for d in scalars}
     yield from _table(["field", "start", "found", "range"], [
         [d.name, shown[d.name](problem.space.start[d.name]), shown[d.name](values[d.name]),
-         "choices" if d.choices else f"{d.low:.4g} to {d.high:.4g}"] for d in scalars
+         "choices" if d.choices else f"{d.range.low:.4g} to {d.range.high:.4g}"] for d in scalars
     ])  # fmt: skip
     vectors = sorted({".".join(d.path) for d in problem.space.dimensions if d.entry is not None})
     if vectors:

@@ -1,14 +1,22 @@
-"""The search space: which fields of the design and the controller vary, and how far."""
+"""The search space: which fields of the design and the controller vary, and how far.
+
+    [space]
+    design = "payload_body"                                 # ranges by name, see tensegym/design/ranges.toml
+    "design.elastic_cable.stiffness" = {low = 200.0, high = 800.0, log = true}
+    "controller.feedback" = {spread = 1.0}                  # every entry, this far about its start
+    "design.payload.two_way" = {choices = [false, true]}
+"""
 
 from __future__ import annotations
 
 import copy
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from tensegym.design.variation import named_ranges
 from tensegym.errors import InputError
+from tensegym.tables import Range, as_number, known, one_line, show
 
 Value = float | int
 Tables = dict[str, Any]  # {"design": as in a design file, "controller": as in a task file}
@@ -18,14 +26,12 @@ Tables = dict[str, Any]  # {"design": as in a design file, "controller": as in a
 class Dimension:
     """One number, or one entry of a vector field, or one of several choices.
 
-    path: table and fields down to the value. entry: its place in a vector, or None. choices: what the number is an
-    index into, for fields that take one of a few values.
+    path: table and fields down to the value. range: what the number may be. entry: its place in a vector, or None.
+    choices: what the number is an index into, for fields that take one of a few values.
     """
 
     path: tuple[str, ...]
-    low: float
-    high: float
-    log: bool = False
+    range: Range
     entry: int | None = None
     choices: tuple[Any, ...] = ()
 
@@ -36,13 +42,13 @@ class Dimension:
 
     def put(self, tables: Tables, value: Any) -> None:
         """Write a value into nested tables, making those on the way."""
-        table = tables
-        for key in self.path[:-1]:
-            table = table.setdefault(key, {})
         if self.entry is None:
-            table[self.path[-1]] = self.choices[int(value)] if self.choices else value
-        else:
-            table[self.path[-1]][self.entry] = value
+            _put(tables, self.path, self.choices[int(value)] if self.choices else value)
+            return
+        table: Any = tables
+        for key in self.path:
+            table = table[key]
+        table[self.entry] = value
 
 
 @dataclass(frozen=True)
@@ -61,33 +67,50 @@ class Space:
         return tables
 
 
-def space_from(data: Any, tables: Tables, whole: Tables) -> Space:
-    """From the [space] table of a task file.
+def written_out(data: Any) -> dict[str, Any]:
+    """The [space] table of a task file with ranges that it names put in place of the name. Raises InputError."""
+    if not isinstance(data, dict) or not data:
+        raise InputError("[space] is empty; give at least one field with its range, as in "
+                         '"design.elastic_cable.stiffness" = {low = 200.0, high = 800.0}')  # fmt: skip
+    dimensions: dict[str, Any] = {}
+    for name, spec in data.items():
+        if name == "design":
+            named = named_ranges(spec, "[space] design", InputError)
+            dimensions |= {f"design.{field}": limits for field, limits in named.items()}
+        else:
+            dimensions[name] = spec
+    return dimensions
+
+
+def space_from(data: dict[str, Any], tables: Tables, whole: Tables) -> Space:
+    """From the [space] table of a task file, written out.
 
     tables: the start design and controller as given; whole: the same with every default in it. Raises InputError
     naming the dimension that is empty, unknown or without a start inside it.
     """
-    if not isinstance(data, dict) or not data:
-        raise InputError("[space] is empty; give at least one field with its range, as in "
-                         '"design.elastic_cable.stiffness" = {low = 200.0, high = 800.0}')  # fmt: skip
     tables, dimensions, start = copy.deepcopy(tables), [], {}
     for name, spec in data.items():
-        path = tuple(name.split("."))
+        path = tuple(str(name).split("."))
         if len(path) < 2 or path[0] not in ("design", "controller"):
-            raise InputError(f"[space] {name!r}: a dimension is a field under design. or controller.")
-        if not isinstance(spec, dict) or set(spec) - {"low", "high", "log", "spread", "choices"}:
-            raise InputError(f"[space] {name!r} = {spec!r}: give low and high (and log), or spread, or choices")
+            raise InputError(one_line(f"[space] {show(name)}: a dimension is a field under design. or controller."))
+        known(spec, ("low", "high", "log", "spread", "choices"), f"[space] {name!r}", InputError)
         value = _value(name, path, whole)
+        entries: list[tuple[int | None, Any]] = [(None, value)]
         if isinstance(value, list | tuple) and "choices" not in spec:
-            Dimension(path, 0, 0).put(tables, list(value))
-            entries: list[tuple[int | None, Any]] = list(enumerate(value))
-        else:
-            entries = [(None, value)]
+            _put(tables, path, list(value))
+            entries = list(enumerate(value))
         for entry, number in entries:
             dimension, first = _dimension(name, path, spec, entry, number)
             dimensions.append(dimension)
             start[dimension.name] = first
     return Space(tuple(dimensions), tables, start)
+
+
+def _put(tables: Tables, path: tuple[str, ...], value: Any) -> None:
+    """Write a value into nested tables, making those on the way."""
+    for key in path[:-1]:
+        tables = tables.setdefault(key, {})
+    tables[path[-1]] = value
 
 
 def _value(name: str, path: tuple[str, ...], whole: Tables) -> Any:
@@ -104,21 +127,19 @@ def _dimension(
     name: str, path: tuple[str, ...], spec: dict[str, Any], entry: int | None, value: Any
 ) -> tuple[Dimension, Value]:
     """A dimension and where it starts."""
+    where = f"[space] {name!r}"
     if "choices" in spec:
         choices = spec["choices"]
-        if not isinstance(choices, list) or len(choices) < 2:
-            raise InputError(f"[space] {name!r}: choices = {choices!r} must be a list of two or more")
-        return (Dimension(path, 0, len(choices) - 1, choices=tuple(choices)),
-                choices.index(value) if value in choices else 0)  # fmt: skip
+        if not isinstance(choices, list) or len(choices) < 2 or len(spec) > 1:
+            raise InputError(one_line(f"{where}: choices = {show(choices)} must be a list of two or more, by itself"))
+        first = choices.index(value) if value in choices else 0
+        return Dimension(path, Range(0, len(choices) - 1), choices=tuple(choices)), first
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InputError(f"[space] {name!r} is {value!r} in the start, no number; give choices")
-    spread = spec.get("spread")
-    low: Any = value - spread if isinstance(spread, int | float) else spec.get("low")
-    high: Any = value + spread if isinstance(spread, int | float) else spec.get("high")
-    numbers = all(isinstance(v, int | float) and not isinstance(v, bool) and math.isfinite(v) for v in (low, high))
-    if not numbers or low >= high:
-        raise InputError(f"[space] {name!r}: the range [{low}, {high}] is empty; low must be a number below high")
-    log = spec.get("log", False)
-    if log and low <= 0:
-        raise InputError(f"[space] {name!r}: low = {low} must be above 0 with log = true")
-    return Dimension(path, float(low), float(high), bool(log), entry), float(min(max(value, low), high))
+        raise InputError(one_line(f"{where} is {show(value)} in the start, no number; give choices"))
+    if "spread" in spec:
+        known(spec, ("spread", "log"), where, InputError)
+        spread = as_number(spec["spread"], f"{where}: spread", InputError)
+        spec = {**spec, "low": value - spread, "high": value + spread}
+        del spec["spread"]
+    limits = Range.parse(spec, where, InputError)
+    return Dimension(path, limits, entry), float(min(max(value, limits.low), limits.high))

@@ -7,10 +7,22 @@ are read from the annotations. `fill` makes it out of a table, `describe` lists 
 from .fields import Checked, FieldRow, bounded, check_fields, choice, describe, fill, noted, parsed, read_fields
 from .ranges import Range
 from .text import decode, parse_toml, parse_yaml, read_text, read_toml, read_yaml
-from .values import as_number, as_numbers, as_rows, as_text, as_whole, in_file, known, mapping, one_line, show
+from .values import (
+    Error,
+    as_number,
+    as_numbers,
+    as_rows,
+    as_text,
+    as_whole,
+    in_file,
+    known,
+    mapping,
+    one_line,
+    show,
+)
 
 __all__ = [
-    "Checked", "FieldRow", "Range", "as_number", "as_numbers", "as_rows", "as_text", "as_whole", "bounded",
+    "Checked", "Error", "FieldRow", "Range", "as_number", "as_numbers", "as_rows", "as_text", "as_whole", "bounded",
     "check_fields", "choice", "decode", "describe", "fill", "in_file", "known", "mapping", "noted", "one_line",
     "parse_toml", "parse_yaml", "parsed", "read_fields", "read_text", "read_toml", "read_yaml", "show",
 ]  # fmt: skip

@@ -103,7 +103,7 @@ def test_commands_stay_within_the_deepest_pull():
     [
         ({"gain": -1.0}, "Cpg.gain = -1.0 is outside"),
         ({"lags": (0.0,)}, "want as many lags"),
-        ({"amplitudes": (math.nan, 0.0)}, "must be finite"),
+        ({"amplitudes": (math.nan, 0.0)}, r"amplitudes\[1\] = nan is no finite number"),
         ({"amplitudes": (0.0,), "lags": (0.0,), "feedback": fitted_feedback()[:28]}, "the robot has 2"),
     ],
 )
