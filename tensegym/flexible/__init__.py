@@ -18,10 +18,9 @@
     stand.py            the paper's stand
 """
 
-from .energies import Energies
 from .flexible_robot import FlexibleRobot
 from .flexure_file import load_robot
 from .flexure_joint import FlexureJoint, Outside
 from .load import Load
 
-__all__ = ["Energies", "FlexibleRobot", "FlexureJoint", "Load", "Outside", "load_robot"]
+__all__ = ["FlexibleRobot", "FlexureJoint", "Load", "Outside", "load_robot"]

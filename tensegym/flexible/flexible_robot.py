@@ -14,9 +14,9 @@ from scipy.spatial.transform import Rotation
 from tensegym.arrays import FloatArray
 from tensegym.bullet import Articulated, World
 from tensegym.errors import FlexureError
+from tensegym.physics.readings import Energies
 
 from . import step_kernel
-from .energies import Energies
 from .flexible_urdf import ORIGIN, FlexibleUrdf
 from .flexure_joint import FlexureJoint, Outside
 from .load import Load
@@ -178,11 +178,11 @@ class FlexibleRobot:
         return self._stepper.velocities(self.torques, self._loads())
 
     def energies(self) -> Energies:
-        """Now, velocities taken at the time of the positions."""
+        """Now [J], velocities taken at the time of the positions; gravity's is zero with every centre at the origin."""
         state = self._stepper
-        kinetic, weight = step_kernel.kinetic_and_weight(state.tree, state.base, state.positions, self.velocities,
+        kinetic, gravity = step_kernel.kinetic_and_gravity(state.tree, state.base, state.positions, self.velocities,
                                                     self.gravity)  # fmt: skip
-        return Energies(kinetic, weight, sum(flexure.energy for flexure in self.flexures.values()))
+        return Energies(kinetic, gravity, sum(flexure.energy for flexure in self.flexures.values()))
 
     def momentum(self) -> FloatArray:
         """(6,) linear momentum [N s] and angular momentum about the world's origin [N m s], now."""

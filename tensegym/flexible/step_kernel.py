@@ -107,8 +107,8 @@ def add_load(tree, base, q, link, force, point, torque, out):
 
 
 @kernel(**OPTIONS)
-def kinetic_and_weight(tree, base, q, v, gravity):
-    """Kinetic energy and that of the weight, zero at the world's origin [J]."""
+def kinetic_and_gravity(tree, base, q, v, gravity):
+    """Kinetic energy and that of gravity, zero with every centre at the world's origin [J]."""
     size, n = len(tree.parent), len(v)
     turns, origins = np.empty((size, 3, 3)), np.empty((size, 3))
     centres, axes = np.empty((size, 3)), np.empty((size, 3))
