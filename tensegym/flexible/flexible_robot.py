@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 from tensegym.arrays import FloatArray
 from tensegym.bullet import Articulated, World
 from tensegym.errors import FlexureError
+from tensegym.flexure.hinge.ranges import check_choice, check_not_negative, check_positive, finite_array
 from tensegym.physics.readings import Energies
 
 from . import step_kernel
@@ -60,15 +61,15 @@ class FlexibleRobot:
         pose: Sequence[float] = ORIGIN, fixed_base: bool = False, ground: bool = False, friction: float = 0.8,
         scheme: Scheme = "trapezoid", gui: bool = False,
     ) -> None:  # fmt: skip
-        if not (np.isfinite(dt) and dt > 0):
-            raise FlexureError(f"dt = {dt!r} s; give a time step above 0")
-        if scheme not in SCHEMES:
-            raise FlexureError(f"scheme = {scheme!r}; one of {', '.join(SCHEMES)}")
+        check_positive("dt", dt, "s")
+        check_not_negative("friction", friction, "")
+        check_choice("scheme", scheme, tuple(SCHEMES))
+        fixed_base = bool(fixed_base)
         self.urdf = FlexibleUrdf(urdf, fixed_base)
         for note in self.urdf.notes:
             warnings.warn(f"{self.urdf.path.name}: {note}", UserWarning, stacklevel=2)
         self.dt, self.scheme, self.fixed_base, self.friction = dt, scheme, fixed_base, friction
-        self.gravity, self.base_pose = _finite("gravity", gravity, 3), _finite("pose", pose, 7)
+        self.gravity, self.base_pose = finite_array(gravity, "gravity", 3), finite_array(pose, "pose", 7)
         self.flexures: dict[str, FlexureJoint] = {}
         self.loads: list[Load] = []
         self.world = World(dt, 0.0, gui)
@@ -127,17 +128,17 @@ class FlexibleRobot:
             pose: (7,) of the base link in the world, default: the robot's own.
             twist: (6,) velocity of a floating base's centre, linear [m/s] and angular [rad/s] in the world.
         """
-        where = self.base_pose if pose is None else _finite("pose", pose, 7)
+        where = self.base_pose if pose is None else finite_array(pose, "pose", 7)
         state, tree, turn = self._stepper, self._stepper.tree, Rotation.from_quat(where[3:])
         state.base[:3] = where[:3] + turn.apply(tree.centre[0])
         state.base[3:] = (turn * Rotation.from_matrix(tree.turn[0]).inv()).as_quat()
         state.positions[:], state.speeds[:] = 0.0, 0.0
         for name, value in (joints or {}).items():
-            state.positions[self._column(name)] = _finite(f"position of {name}", [value], 1)[0]
+            state.positions[self._column(name)] = finite_array([value], f"position of {name}", 1)[0]
         for name, value in (rates or {}).items():
-            state.speeds[tree.first + self._column(name)] = _finite(f"rate of {name}", [value], 1)[0]
+            state.speeds[tree.first + self._column(name)] = finite_array([value], f"rate of {name}", 1)[0]
         if tree.first:
-            state.speeds[:6] = _finite("twist", twist, 6)
+            state.speeds[:6] = finite_array(twist, "twist", 6)
         for flexure in self.flexures.values():
             flexure.outside = Outside(0, 1.0, 0.0)
         state.start(self.torques, self._loads())
@@ -146,7 +147,7 @@ class FlexibleRobot:
         """Joint positions, for ``place``, that put a flexure's tip at (x, y, theta) [m, rad] in its base axes."""
         if name not in self.flexures:
             raise FlexureError(f"no flexure {name!r} in this robot; it has {', '.join(self.flexures) or 'none'}")
-        x, y, theta = np.array(pose, dtype=float)
+        x, y, theta = finite_array(pose, "pose", 3)
         along, across, *_ = self.urdf.chains[name]
         if along is None or across is None:  # a pin
             return {name: float(theta)}
@@ -225,11 +226,3 @@ class FlexibleRobot:
         if name not in self.links:
             raise FlexureError(f"{self.urdf.path.name} has no link {name!r}; it has {', '.join(self.links)}")
         return self.links[name]
-
-
-def _finite(what: str, values: Sequence[float], count: int) -> FloatArray:
-    """(count,) array. Raises FlexureError for another number of values or one that is not finite."""
-    array = np.array(values, dtype=float)
-    if array.shape != (count,) or not np.isfinite(array).all():
-        raise FlexureError(f"{what} = {array.tolist()}; give {count} finite value{'s' * (count > 1)}")
-    return array

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
 from tensegym.flexure.hinge import Box
+from tensegym.flexure.hinge.ranges import check_not_negative, finite_array, is_number, shown
 from tensegym.flexure.models.joint import Joint
 from tensegym.flexure.models.joint_file import load_joint
 from tensegym.flexure.models.torsion_spring import TorsionSpring
@@ -85,19 +86,18 @@ class FlexureJoint:
         else:
             spring, box = fitted, box or getattr(fitted, "box", None)
         spring_row(spring)  # refuses a model without an energy
-        if box is None:
+        if box is None:  # of a spring of its own
             kind = type(spring).__name__
             raise FlexureError(f"joint {joint!r}: a {kind} alone has no limit; give box=Box(angle, force)")
-        if not (np.isfinite(loss_time) and loss_time >= 0):
-            raise FlexureError(f"joint {joint!r}: loss_time = {loss_time:g} s; give 0 or more")
-        if not np.isfinite(centre):
-            raise FlexureError(f"joint {joint!r}: centre = {centre:g}; give a fraction of the hinge's length")
-        if across is not None and not (len(across) == 3 and all(np.isfinite(k) and k > 0 for k in across)):
+        check_not_negative(f"joint {joint!r}: loss_time", loss_time, "s")
+        if not is_number(centre):
+            raise FlexureError(f"joint {joint!r}: centre = {shown(centre)}; give a fraction of the hinge's length")
+        if across is not None and not (finite_array(across, f"joint {joint!r}: across", 3) > 0).all():
             raise FlexureError(f"joint {joint!r}: across = {across}; give 3 stiffnesses above 0 (z, about y, about x)")
         self.robot, self.name, self.box = robot, joint, box
         self.spring: Spring = spring  # type: ignore[assignment]
         self.loss_time, self.across, self.centre = float(loss_time), across, float(centre)
-        self._along = None if along is None else np.array(along, dtype=float)
+        self._along = None if along is None else finite_array(along, f"joint {joint!r}: along", 3)
         self.row, self._warned = -1, False
         self.outside = Outside(0, 1.0, 0.0)
         robot.put(self)
@@ -109,7 +109,7 @@ class FlexureJoint:
             along = np.array([0.0, 1.0, 0.0] if abs(axis[0]) > 0.9 else [1.0, 0.0, 0.0])
             if abs(along @ axis) > 0:
                 along = along - (along @ axis) * axis
-        if along.shape != (3,) or not abs(along @ axis) < 1e-6 * np.linalg.norm(along):
+        if not abs(along @ axis) < 1e-6 * np.linalg.norm(along):
             raise FlexureError(f"joint {self.name!r}: along = {along.tolist()} is not across the axis {axis.tolist()}")
         along = along / np.linalg.norm(along)
         pin = isinstance(self.spring, TorsionSpring)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
-from tensegym.errors import FlexureError
+from tensegym.flexure.hinge.ranges import finite_array
+from tensegym.tables import show
 
 
 @dataclass(frozen=True)
@@ -22,6 +22,4 @@ class Load:
 
     def __post_init__(self) -> None:
         for name in ("force", "point", "torque"):
-            value = getattr(self, name)
-            if len(value) != 3 or not all(map(math.isfinite, value)):
-                raise FlexureError(f"{name} = {tuple(value)} on link {self.link!r}; give 3 finite values")
+            finite_array(getattr(self, name), f"{name} on link {show(self.link)}", 3)

@@ -333,7 +333,7 @@ def test_bad_joints_are_refused(tmp_path):
             FlexureJoint(robot, "hinge", joint)
     with pytest.raises(FlexureError, match="gravity = "):
         FlexibleRobot(STAND, gravity=(0, 0))
-    with pytest.raises(FlexureError, match=r"force = .* on link 'arm'"):
+    with pytest.raises(FlexureError, match=r"force on link 'arm' = "):
         Load("arm", (np.nan, 0, 0))
     with FlexibleRobot(STAND, fixed_base=True) as robot, pytest.raises(FlexureError, match="position of hinge"):
         robot.place({"hinge": np.inf})

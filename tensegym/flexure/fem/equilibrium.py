@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
 from tensegym.flexure.hinge import Hinge
+from tensegym.flexure.hinge.ranges import check_not_negative, number_array
 
 from . import newton
 from .mesh import ELEMENTS, mesh_of
@@ -81,7 +82,8 @@ def apply_wrench(
     Raises:
         FlexureError: for a shape that does not fit or values that are not finite.
     """
-    wrench = _rows(np.atleast_2d(np.asarray(wrench, dtype=float)), (3,), "wrench")
+    check_not_negative("arm", arm, "m")
+    wrench = _rows(np.atleast_2d(number_array(wrench, "wrench")), (3,), "wrench")
     cases = np.zeros((len(wrench), 8))
     cases[:, newton.FX : newton.MZ + 1] = wrench
     cases[:, newton.ARM] = arm
@@ -90,7 +92,7 @@ def apply_wrench(
 
 def _rows(value: ArrayLike, tail: tuple[int, ...], name: str, count: int | None = None) -> FloatArray:
     """(n, *tail) array, or (count, *tail) by broadcasting. Raises FlexureError that names ``name``."""
-    array = np.asarray(value, dtype=float)
+    array = number_array(value, name)
     if count is not None:
         try:
             array = np.broadcast_to(array, (count, *tail))

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tensegym.arrays import FloatArray, IntArray
-from tensegym.errors import FlexureError
 from tensegym.flexure.hinge import GROUND, TIP, Hinge
+from tensegym.flexure.hinge.ranges import check_count
 
 ELEMENTS = 16  # a leaf as long as the hinge: exact to the elastica within 3e-7 L
 
@@ -26,8 +26,7 @@ class Mesh(NamedTuple):
 
 def mesh_of(hinge: Hinge, elements: int = ELEMENTS) -> Mesh:
     """Flat arrays of a hinge; ``elements`` for a leaf as long as the hinge, others in proportion, 4 at least."""
-    if not 1 <= elements <= 2000:
-        raise FlexureError(f"elements = {elements} is outside [1, 2000]; 16 is exact to the elastica within 3e-7 L")
+    check_count("elements", elements, 1, 2000, "16 is exact to the elastica within 3e-7 L")
     order = [GROUND, *(b for b in hinge.bodies if b not in (GROUND, TIP)), TIP]
     points: dict[str, list[tuple[float, float]]] = {body: [] for body in order}
     for leaf in hinge.leaves:

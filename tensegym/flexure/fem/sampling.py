@@ -7,13 +7,14 @@ import numpy as np
 from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
 from tensegym.flexure.hinge import Box, Hinge, States
-from tensegym.flexure.hinge.ranges import check_max_angle
+from tensegym.flexure.hinge.ranges import check_count, check_max_angle
 
 from .equilibrium import rotate
 from .mesh import ELEMENTS
 from .path import CONVERGED
 
 HELD_OUT_SEED = 12345
+MOST_STATES = 100_000
 
 
 def moment_at(hinge: Hinge, angle: float, elements: int = ELEMENTS) -> float:
@@ -51,8 +52,8 @@ def fit_states(hinge: Hinge, box: Box, count: int = 600, seed: int = 0, elements
     """
     from scipy.stats import qmc  # late: scipy.stats doubles the time of the import for all who only solve
 
-    if count < 8:
-        raise FlexureError(f"count = {count}; a fit needs 8 states or more")
+    check_count("count", count, 8, MOST_STATES, "a fit needs 8 states or more")
+    check_count("seed", seed, 0, 2**63, "give 0 or more")
     draws = qmc.Sobol(3, seed=seed).random_base2(int(np.ceil(np.log2(count))))[:count]
     return states_at(hinge, box, -np.cos(np.pi * draws), elements)
 
@@ -61,6 +62,8 @@ def held_out_states(
     hinge: Hinge, box: Box, count: int = 300, seed: int = HELD_OUT_SEED, elements: int = ELEMENTS
 ) -> States:
     """Uniformly random wrenches of the box, as ``fit_states`` counts them; keep the seed out of any fit."""
+    check_count("held_out", count, 1, MOST_STATES, "300 tell the errors well")
+    check_count("seed", seed, 0, 2**63, "give 0 or more")
     return states_at(hinge, box, np.random.default_rng([seed, 1]).uniform(-1, 1, (count, 3)), elements)
 
 

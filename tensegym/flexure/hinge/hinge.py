@@ -6,8 +6,17 @@ import math
 from dataclasses import dataclass, field, replace
 
 from tensegym.errors import FlexureError
+from tensegym.tables import show
 
-from .ranges import check_max_angle, check_not_negative, check_positive, is_number, shown
+from .ranges import (
+    check_choice,
+    check_max_angle,
+    check_not_negative,
+    check_positive,
+    finite_array,
+    is_number,
+    shown,
+)
 
 GROUND, TIP = "ground", "tip"
 Point = tuple[float, float]
@@ -30,8 +39,7 @@ class Material:
         check_positive("youngs_modulus", self.youngs_modulus, "Pa")
         if not (is_number(self.poisson_ratio) and -1 < self.poisson_ratio < 0.5):
             raise FlexureError(f"poisson_ratio = {shown(self.poisson_ratio)} is outside (-1, 0.5); PETG has 0.38")
-        if self.modulus not in ("beam", "plate", "factor"):
-            raise FlexureError(f"modulus = {self.modulus!r}; one of beam, plate, factor")
+        check_choice("modulus", self.modulus, ("beam", "plate", "factor"))
         check_positive("factor", self.factor)
         if self.modulus != "factor" and self.factor != 1.0:
             raise FlexureError(
@@ -66,8 +74,7 @@ class Leaf:
 
     def __post_init__(self) -> None:
         for what, point in (("start", self.start), ("end", self.end)):
-            if len(point) != 2 or not all(map(is_number, point)):
-                raise FlexureError(f"leaf {self.start_body}-{self.end_body}: {what} = {point} is no point (x, y)")
+            finite_array(point, f"leaf {self.start_body}-{self.end_body}: {what}", 2)
         if self.start_body == self.end_body:
             raise FlexureError(f"a leaf joins {self.start_body!r} to itself; its ends need two bodies")
         check_positive(f"leaf {self.start_body}-{self.end_body}: width", self.width, "m")
@@ -105,6 +112,8 @@ class Hinge:
         check_positive("length", self.length, "m")
         check_not_negative("arm", self.arm, "m")
         check_max_angle(self.max_angle)
+        if not all(isinstance(body, str) for body in (self.name, *self.bodies)):
+            raise FlexureError(f"name and bodies must be texts: {show(self.name)}, {show(self.bodies)}")
         if len(set(self.bodies)) != len(self.bodies) or not {GROUND, TIP} <= set(self.bodies):
             raise FlexureError(f"bodies = {list(self.bodies)}; give each once, with {GROUND!r} and {TIP!r} among them")
         for leaf in self.leaves:

@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable
 
 from tensegym.errors import FlexureError
+from tensegym.tables import show
 
 from .hinge import GROUND, TIP, Hinge, Leaf, Material
 from .ranges import check_positive, is_number, shown
@@ -39,6 +40,7 @@ def trls2(*, length: float = 40 * MM, width: float = 40 * MM, thickness: float =
           material: Material | None = None, arm: float = 120 * MM) -> Hinge:  # fmt: skip
     """TRLS(2x): a leaf with two rigid transverse ribs at L/3 and 2L/3 (assumed), ``rib`` long. Lengths [m]."""
     check_positive("rib", rib, "m")
+    check_positive("length", length, "m")
     if not rib < length / 3:
         raise FlexureError(f"rib = {rib:g} m is outside (0, length / 3) at length = {length:g} m")
     stops = [
@@ -99,14 +101,17 @@ PAPER_HINGES = ("x-hinge", "leaf-spring", "trls2", "tfch")
 
 def preset(name: str, **dimensions: float) -> Hinge:
     """A preset by name, with its dimensions [m] by keyword. Raises FlexureError for an unknown name or dimension."""
-    if name not in PRESETS:
-        near = difflib.get_close_matches(name, PRESETS, 1)
+    if not isinstance(name, str) or name not in PRESETS:
+        near = difflib.get_close_matches(str(name)[:100], PRESETS, 1)
         hint = f"; did you mean {near[0]}?" if near else ""
-        raise FlexureError(f"unknown hinge {name!r}; one of {', '.join(PRESETS)}, or a path that ends in .toml{hint}")
+        names = ", ".join(PRESETS)
+        raise FlexureError(f"unknown hinge {show(name)}; one of {names}, or a path that ends in .toml{hint}")
     known = set(inspect.signature(PRESETS[name]).parameters)
     for key in dimensions:
         if key not in known:
             raise FlexureError(
                 f"hinge {name} has no {key!r}; its dimensions are {', '.join(sorted(known - {'material'}))}"
             )
+        if key not in ("arm", "crossing", "material"):
+            check_positive(key, dimensions[key], "m")
     return PRESETS[name](**dimensions)

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
 
+from .ranges import number_array
+
 _SHAPES = {"theta": (), "tip": (2,), "force": (2,), "moment": ()}
 
 
@@ -31,7 +33,7 @@ class States:
 
     def __post_init__(self) -> None:
         for name in _SHAPES:
-            object.__setattr__(self, name, np.ascontiguousarray(getattr(self, name), dtype=float))
+            object.__setattr__(self, name, np.ascontiguousarray(number_array(getattr(self, name), name)))
         if self.theta.ndim != 1:
             raise FlexureError(f"theta has shape {self.theta.shape}; give one angle a state, shape (n,)")
         for name, tail in _SHAPES.items():

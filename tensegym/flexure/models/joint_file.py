@@ -9,12 +9,15 @@ from typing import Any
 
 import numpy as np
 
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
 from tensegym.files import replace_file
 from tensegym.flexure.hinge import Box, hinge_from_dict, hinge_to_dict
+from tensegym.flexure.hinge.ranges import check_count
+from tensegym.tables import as_number, as_numbers, as_text, in_file, mapping, one_line, read_text, show
 
 from .certificate import certify
-from .joint import Joint, Model
+from .joint import MODELS, Joint, Model
 from .model_error import ModelError
 from .planar_spring import PlanarSpring
 from .potential import Potential
@@ -23,6 +26,7 @@ from .stiffness_diagram import StiffnessDiagram
 from .torsion_spring import TorsionSpring
 
 FORMAT = "tensegym flexible joint, version 1"
+HIGHEST_DEGREE = 30
 
 
 def save_joint(joint: Joint, path: str | Path) -> None:
@@ -51,32 +55,67 @@ def joint_to_dict(joint: Joint) -> dict[str, Any]:
 
 
 def load_joint(path: str | Path) -> Joint:
-    """Read a joint and certify its potential again. Raises FlexureError or FileNotFoundError."""
-    path = Path(path)
-    if not path.is_file():
-        raise FileNotFoundError(f"no joint file {path}")
+    """Read a joint and certify its potential again.
+
+    Raises:
+        FileNotFoundError: where there is no such file.
+        FlexureError: naming the file and the field.
+    """
+    text = read_text(path, "joint file", FlexureError)
     try:
-        data = json.loads(path.read_text())
-    except (json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise FlexureError(f"{path} is not JSON: {error}") from error
+        data = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise FlexureError(one_line(f"{path} is not JSON: {error}")) from error
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise FlexureError(f"{path} is no joint file (format {FORMAT!r}); write one with `tensegym flexure fit`")
-    try:
+    with in_file(str(path)):
         joint = joint_from_dict(data)
-    except (KeyError, TypeError, AttributeError) as error:
-        raise FlexureError(f"{path}: the field {error} is missing or has the wrong type") from error
-    if "potential" in joint.models:
-        joint.certificate()
+        if "potential" in joint.models:
+            joint.certificate()
     return joint
 
 
 def joint_from_dict(data: dict[str, Any]) -> Joint:
-    """The inverse of joint_to_dict."""
-    box = Box(data["box"]["max_angle_rad"], data["box"]["max_force_N"])
-    models = {name: _model_from_dict(name, model, data["length_m"], box) for name, model in data["models"].items()}
-    errors = {name: _error_from_dict(error) for name, error in data["errors"].items()}
-    hinge = hinge_from_dict(data["hinge"]) if data.get("hinge") else None
-    return Joint(data["source"], data["length_m"], box, models, errors, data["errors_of"], hinge, tuple(data["notes"]))
+    """The inverse of joint_to_dict. Raises FlexureError that names the field."""
+    length, of_box = _number(data, "length_m"), _table(data, "box")
+    box = Box(_number(of_box, "max_angle_rad"), _number(of_box, "max_force_N"))
+    named = _table(data, "models")
+    models = {name: _model_from_dict(name, _table(named, name), length, box) for name in named}
+    of_models = _table(data, "errors")
+    errors = {name: _error_from_dict(_table(of_models, name)) for name in of_models}
+    hinge = hinge_from_dict(_table(data, "hinge")) if data.get("hinge") is not None else None
+    notes = _list(data, "notes")
+    return Joint(_text(data, "source"), length, box, models, errors, _text(data, "errors_of"), hinge,
+                 tuple(as_text(note, "a note", FlexureError) for note in notes))  # fmt: skip
+
+
+def _field(data: dict[str, Any], name: str) -> Any:
+    if name not in data:
+        raise FlexureError(f"the field {name!r} is missing")
+    return data[name]
+
+
+def _number(data: dict[str, Any], name: str) -> float:
+    return as_number(_field(data, name), name, FlexureError)
+
+
+def _text(data: dict[str, Any], name: str) -> str:
+    return as_text(_field(data, name), name, FlexureError)
+
+
+def _table(data: dict[str, Any], name: str) -> dict[str, Any]:
+    return mapping(_field(data, name), name, FlexureError)
+
+
+def _list(data: dict[str, Any], name: str) -> list[Any]:
+    value = _field(data, name)
+    if not isinstance(value, list):
+        raise FlexureError(one_line(f"{name} = {show(value)} must be a list"))
+    return value
+
+
+def _column(data: dict[str, Any], name: str) -> FloatArray:
+    return np.array(as_numbers(_list(data, name), None, name, FlexureError))
 
 
 def _model_to_dict(model: Model) -> dict[str, Any]:
@@ -98,22 +137,26 @@ def _model_to_dict(model: Model) -> dict[str, Any]:
 
 def _model_from_dict(name: str, data: dict[str, Any], length: float, box: Box) -> Model:
     if name == "potential":
-        rows = np.zeros((len(NAMES), int(data["degree"]) + 1))
+        degree = _field(data, "degree")
+        check_count("degree", degree, 0, HIGHEST_DEGREE, "a fit has 6")
+        rows, by_power = np.zeros((len(NAMES), degree + 1)), _table(data, "coefficients_by_power")
         for row, key in zip(rows, NAMES, strict=True):
-            for power, value in data["coefficients_by_power"][key].items():
-                if not (power.isdigit() and int(power) < len(row)):
-                    raise FlexureError(f"coefficient {key}[{power}]: the power is outside [0, {len(row) - 1}]")
-                row[int(power)] = value
-        return Potential(rows, length, data["moment_scale_Nm"], data["angle_scale_rad"], box)
+            for power, value in _table(by_power, key).items():
+                if not (power.isdecimal() and len(power) < 4 and int(power) < len(row)):
+                    raise FlexureError(f"coefficient {key}[{power[:40]}]: the power is outside [0, {len(row) - 1}]")
+                row[int(power)] = as_number(value, f"coefficient {key}[{power}]", FlexureError)
+        return Potential(rows, length, _number(data, "moment_scale_Nm"), _number(data, "angle_scale_rad"), box)
     if name == "planar":
-        return PlanarSpring(length, data["b"], data["kx_N_per_m"], data["ky_N_per_m"], data["kz_Nm_per_rad"])
+        return PlanarSpring(length, *(_number(data, key) for key in ("b", "kx_N_per_m", "ky_N_per_m", "kz_Nm_per_rad")))
     if name == "torsion":
-        return TorsionSpring(length, data["lambda"], data["stiffness_Nm_per_rad"])
+        return TorsionSpring(length, _number(data, "lambda"), _number(data, "stiffness_Nm_per_rad"))
     if name == "paper":
-        stiffness = np.column_stack([data["kx_N_per_m"], data["ky_N_per_m"], data["kz_Nm_per_rad"]])
-        theta, singular = np.array(data["theta_rad"]), np.array(data["singular_theta_rad"])
-        return StiffnessDiagram(length, data["b"], theta, stiffness, singular)
-    raise FlexureError(f"unknown model {name!r} in a joint file; one of potential, planar, paper, torsion")
+        columns = [_column(data, key) for key in ("kx_N_per_m", "ky_N_per_m", "kz_Nm_per_rad")]
+        if len({len(column) for column in columns}) > 1:
+            raise FlexureError("kx_N_per_m, ky_N_per_m and kz_Nm_per_rad have different lengths")
+        return StiffnessDiagram(length, _number(data, "b"), _column(data, "theta_rad"), np.column_stack(columns),
+                                _column(data, "singular_theta_rad"))  # fmt: skip
+    raise FlexureError(one_line(f"unknown model {show(name)} in a joint file; one of {', '.join(MODELS)}"))
 
 
 _ERROR_KEYS = {"tip_rms": "tip_rms_m", "tip_max": "tip_max_m", "moment_rms": "moment_rms_share",
@@ -127,5 +170,8 @@ def _error_to_dict(error: ModelError) -> dict[str, Any]:
 
 
 def _error_from_dict(data: dict[str, Any]) -> ModelError:
-    values: dict[str, Any] = {name: np.inf if data[key] is None else data[key] for name, key in _ERROR_KEYS.items()}
-    return ModelError(**values)
+    values: dict[str, Any] = {name: np.inf if _field(data, key) is None else _number(data, key)
+                              for name, key in _ERROR_KEYS.items()}  # fmt: skip
+    for name in ("count", "lost"):
+        check_count(_ERROR_KEYS[name], data[_ERROR_KEYS[name]], 0, 10**9, "it counts states")
+    return ModelError(**values | {"count": data["states"], "lost": data["lost"]})

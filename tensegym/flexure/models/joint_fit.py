@@ -48,7 +48,7 @@ def fit_joint(
         FlexureError: when the box goes past buckling, the certificate fails, or the seed is that of the states held
             out.
     """
-    if seed == HELD_OUT_SEED:
+    if isinstance(seed, int) and seed == HELD_OUT_SEED:
         raise FlexureError(f"seed = {seed} draws the states held out; take another")
     box = default_box(hinge, max_angle, max_force)
     states = fit_states(hinge, box, count, seed, elements)

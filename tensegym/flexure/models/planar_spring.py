@@ -20,7 +20,7 @@ from scipy.optimize import least_squares
 from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
 from tensegym.flexure.hinge import States
-from tensegym.flexure.hinge.ranges import check_positive
+from tensegym.flexure.hinge.ranges import check_positive, finite_array
 
 from .potential_fit import MOMENT_UNIT, TIP_UNIT
 
@@ -98,6 +98,8 @@ class PlanarSpring:
     """[N m/rad]."""
 
     def __post_init__(self) -> None:
+        check_positive("length", self.length, "m")
+        finite_array([self.b], "b", 1)
         for name, unit in (("kx", "N/m"), ("ky", "N/m"), ("kz", "N m/rad")):
             check_positive(name, getattr(self, name), unit)
 

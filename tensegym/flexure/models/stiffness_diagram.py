@@ -17,6 +17,7 @@ import numpy as np
 from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
 from tensegym.flexure.hinge import States
+from tensegym.flexure.hinge.ranges import check_positive, finite_array, number_array
 
 from .planar_spring import spring_poses, spring_wrench
 from .pseudo_rigid import Placement, planar_placement, spring_track
@@ -36,6 +37,15 @@ class StiffnessDiagram:
     """(k, 3) kx, ky [N/m], kz [N m/rad]."""
     singular: FloatArray
     """Angles of the path left out [rad]."""
+
+    def __post_init__(self) -> None:
+        check_positive("length", self.length, "m")
+        finite_array([self.b], "b", 1)
+        count = len(np.atleast_1d(number_array(self.theta, "theta")))
+        if count < 2 or not (np.diff(finite_array(self.theta, "theta", count)) > 0).all():
+            raise FlexureError(f"theta has {count} angles; give 2 or more that rise")
+        if number_array(self.stiffness, "stiffness").shape != (count, 3) or not np.isfinite(self.stiffness).all():
+            raise FlexureError(f"stiffness does not hold kx, ky, kz at each of the {count} angles")
 
     def at(self, theta: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """kx, ky, kz (n,) at theta (n,)."""

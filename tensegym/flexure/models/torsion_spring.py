@@ -9,7 +9,7 @@ import numpy as np
 from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
 from tensegym.flexure.hinge import States
-from tensegym.flexure.hinge.ranges import check_positive
+from tensegym.flexure.hinge.ranges import check_positive, finite_array
 
 from .pseudo_rigid import torsion_lambda
 
@@ -26,6 +26,8 @@ class TorsionSpring:
     """[N m/rad]."""
 
     def __post_init__(self) -> None:
+        check_positive("length", self.length, "m")
+        finite_array([self.fraction], "lambda", 1)
         check_positive("stiffness", self.stiffness, "N m/rad")
 
     def poses(self, theta: FloatArray, force: FloatArray) -> States:

@@ -256,3 +256,35 @@ def test_the_load_of_a_hinge_without_an_arm_is_said(cli, tmp_path):
     joint = fit_joint(preset("parallel-guide"), held_out=0)
     assert any("pure moment" in note for note in joint.notes)
     assert not any("pure moment" in note for note in fit_joint(preset("tfch"), held_out=0).notes)
+
+
+@pytest.mark.parametrize(("spoil", "words"), [
+    (lambda d: d["models"]["potential"].update(degree=2_000_000_000), r"degree = 2000000000 is outside \[0, 30\]"),
+    (lambda d: d["models"]["planar"].update(b="x"), "b = 'x' is a text, no number"),
+    (lambda d: d["models"]["paper"].update(theta_rad=[0.1, "a"]), r"theta_rad\[2\] = 'a'"),
+    (lambda d: d["models"]["paper"].update(theta_rad=[0.2, 0.1]), "angles"),
+    (lambda d: d["models"]["paper"].update(kx_N_per_m=[1.0]), "different lengths"),
+    (lambda d: d["models"]["torsion"].update({"lambda": None}), "lambda = None"),
+    (lambda d: d["errors"]["planar"].update(tip_rms_m="small"), "tip_rms_m = 'small'"),
+    (lambda d: d.update(notes="none"), "notes = 'none' must be a list"),
+    (lambda d: d.update(source=3), "source = 3 must be a text"),
+    (lambda d: d.update(hinge=[1]), "hinge = .* must be a table"),
+    (lambda d: d.update(models=[]), "models = .* must be a table"),
+])  # fmt: skip
+def test_odd_values_in_joint_files_are_named(joint_file, tmp_path, spoil, words):
+    data = json.loads(joint_file.read_text())
+    spoil(data)
+    path = tmp_path / "odd.json"
+    path.write_text(json.dumps(data))
+    with pytest.raises(FlexureError, match=words) as caught:
+        load_joint(path)
+    assert "odd.json" in str(caught.value) and len(str(caught.value)) <= 300
+
+
+@pytest.mark.parametrize("text", ["[" * 100_000, "9" * 5000, '{"format": ', "\x00", "[]", "null"])
+def test_texts_that_are_no_joint_files(text, tmp_path):
+    path = tmp_path / "no.json"
+    path.write_text(text)
+    with pytest.raises(FlexureError, match="is not JSON|is no joint file") as caught:
+        load_joint(path)
+    assert "\n" not in str(caught.value) and len(str(caught.value)) <= 300

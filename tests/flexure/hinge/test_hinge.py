@@ -43,7 +43,7 @@ PLAIN = Leaf(GROUND, (0, 0), TIP, (0.04, 0), 0.04, 0.0008)
     (lambda: Hinge("h", (PLAIN,), 0.04, (GROUND,)), "bodies"),
     (lambda: Hinge("h", (Leaf(GROUND, (0, 0), "top", (0.04, 0), 0.04, 0.0008),), 0.04), "names body 'top'"),
     (lambda: Leaf(TIP, (0, 0), TIP, (0.04, 0), 0.04, 0.0008), "joins 'tip' to itself"),
-    (lambda: Leaf(GROUND, (0, math.inf), TIP, (0.04, 0), 0.04, 0.0008), "no point"),
+    (lambda: Leaf(GROUND, (0, math.inf), TIP, (0.04, 0), 0.04, 0.0008), r"start = \(0, inf\); give 2 finite values"),
     (lambda: Hinge("h", (PLAIN,), 0.04, arm=-0.1), "arm = -0.1 m"),
     (lambda: Hinge("h", (PLAIN,), 0.04, max_angle=2), "max_angle = 2 rad"),
     (lambda: preset("cross-spring", crossing=1.5), "crossing = 1.5 is outside"),
