@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any, Literal
+
+from tensegym.files import replace_path
 
 
 def require_matplotlib() -> None:
@@ -38,17 +39,14 @@ def new_figure(
 
 def save(figure: Any, path: Path, dpi: int = 110) -> None:
     """Write the figure in the format that the name of ``path`` ends in; the file is whole or not there."""
-    fresh = path.with_name(path.name + ".tmp")
-    try:
+    with replace_path(path) as fresh:
         figure.savefig(fresh, dpi=dpi, format=path.suffix[1:] or "png")
-        os.replace(fresh, path)
-    finally:
-        fresh.unlink(missing_ok=True)
 
 
 def save_pixels(pixels: Any, path: Path) -> None:
-    """Write a picture (height, width, 3), uint8, as it is."""
+    """Write a picture (height, width, 3), uint8, as it is; the file is whole or not there."""
     require_matplotlib()
     from matplotlib.image import imsave
 
-    imsave(path, pixels)
+    with replace_path(path) as fresh:
+        imsave(fresh, pixels)

@@ -62,7 +62,7 @@ def split_rod_urdf(name: str, rod: Rod, length: float, flexure: RodFlexure, pin:
     tube = (length - flexure.length) / 2
     half = rod.half(tube)
     inertia = (half.transverse_inertia, half.transverse_inertia, half.axial_inertia)
-    place = tube + pin.place * flexure.length  # of the pin, from the first end
+    place = tube + pin.fraction * flexure.length  # of the pin, from the first end
     leaf = f'<box size="{flexure.thickness:.14g} {flexure.width:.14g} {flexure.length:.14g}"/>'
     first = _tube(rod, tube, tube / 2 - half.centre, (-half.centre,), colour)
     first.append(_shape("visual", leaf, length / 2 - half.centre, "0.7 0.75 0.8 1"))

@@ -14,6 +14,7 @@ import numpy as np
 
 from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError, InputError
+from tensegym.files import replace_path
 
 from .sighting import Sighting
 
@@ -72,4 +73,5 @@ def draw_overlay(grey: FloatArray, seen: Sighting, path: Path) -> None:
         pen.line([*map(float, a), *map(float, b)], fill=colour, width=thick)
     box = [*map(float, near - seen.width), *map(float, near + seen.width)]
     pen.ellipse(box, outline="red", width=thick)
-    picture.save(path, format="PNG")
+    with replace_path(path) as fresh:
+        picture.save(fresh, format="PNG")

@@ -28,8 +28,8 @@ PASSES = 4  # of the direction of the rod's line; the tip moves little with it
 class RodPin:
     """A pin on the hinge's axis, a torsion spring in it, and how far both are from the hinge."""
 
-    place: float
-    """Fraction of the hinge's length, from its base."""
+    fraction: float
+    """Where it stands on the hinge's length, from its base."""
     stiffness: float
     """[N m/rad]."""
     moment_error: float

@@ -90,7 +90,7 @@ def test_pin_of_a_leaf_bent_by_moments():
     """K = EI / L about the middle: the leaf is an arc."""
     hinge = leaf_spring(width=0.02, thickness=1e-3, material=STEEL)
     pin = rod_pin(hinge, 0.33, 0.33, 0.3)
-    assert pin.place == pytest.approx(0.5, abs=1e-9)
+    assert pin.fraction == pytest.approx(0.5, abs=1e-9)
     assert pin.stiffness == pytest.approx(bending(hinge) / hinge.length, rel=1e-9)
     assert pin.moment_error < 1e-9
     # the arc's chord 2 sin(theta / 2) / theta against the two links' cos(theta / 2)
