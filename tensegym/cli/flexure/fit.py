@@ -12,7 +12,6 @@ import tyro
 
 from tensegym.cli.options import Seed, Within
 from tensegym.errors import InputError
-from tensegym.flexure.hinge import symmetry_of
 from tensegym.flexure.hinge.presets import MM
 from tensegym.flexure.measured.measured_file import ARM_LENGTH, PAPER_LENGTH
 from tensegym.flexure.measured.measured_report import fit_data
@@ -28,7 +27,8 @@ from .hinge_options import BoxOptions, HingeOptions, refuse_unused
 class Fit:
     """Fit every joint model to a hinge's FEM states, certify the potential, and write them as one small JSON file.
 
-    With --data one model is fitted to an experiment instead; HINGE then gives L, the arm and the symmetry only.
+    With --data one model is fitted to an experiment instead; HINGE then gives L, the arm, the symmetry and the loads to
+    expect.
     """
 
     out: Path
@@ -79,7 +79,7 @@ class Fit:
         refuse_unused(self.box.given(), "with --data, whose own range is fitted")
         if self.hinge:
             hinge = self.options.apply(self.hinge)
-            return fit_data(path, self.out, hinge.length, model, arm_length=hinge.arm, symmetry=symmetry_of(hinge))
+            return fit_data(path, self.out, hinge.length, model, arm_length=hinge.arm, hinge=hinge)
         refuse_unused([name for name in self.options.given() if name not in ("length_mm", "arm_mm")],
                       "with --data and without HINGE")  # fmt: skip
         length = PAPER_LENGTH if self.options.length_mm is None else MM * self.options.length_mm

@@ -2,38 +2,47 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from tensegym.errors import InputError
+from tensegym.flexure.hinge import Hinge, symmetry_of
 from tensegym.flexure.models.joint_file import joint_to_dict, save_joint
 from tensegym.report import Report, table
 
 from .measured_file import ARM_LENGTH
 from .measured_fit import MeasuredFit, fit_file
+from .plausibility import load_note
 
 
-def fit_data(data: Path, out: Path, length: float, model: str = "potential", *, arm_length: float = ARM_LENGTH,
-             symmetry: str = "both") -> Report:  # fmt: skip
+def fit_data(
+    data: Path, out: Path, length: float, model: str = "potential", *, arm_length: float = ARM_LENGTH,
+    hinge: Hinge | None = None,
+) -> Report:  # fmt: skip
     """`tensegym flexure fit --data`: fit a model to a CSV, save the joint and report.
 
     Args:
         data: the CSV.
         out: the joint file to write.
         length: rest length L of the hinge [m].
-        model, symmetry: as ``fit_file``.
+        model: as ``fit_file``.
         arm_length: the arm beyond the tip [m].
+        hinge: gives the symmetry, and the loads that are to be expected; without it both ends and sides are alike.
 
     Raises:
         InputError, FlexureError: as ``fit_file``, before anything is written.
     """
     if not (0.0 < length < np.inf and 0.0 <= arm_length < np.inf):
         raise InputError(f"length {length:g} m, arm {arm_length:g} m: give a length above 0 and an arm of 0 or more")
-    fit = fit_file(data, length, model, arm_length=arm_length, symmetry=symmetry)
+    fit = fit_file(data, length, model, arm_length=arm_length, symmetry=symmetry_of(hinge) if hinge else "both")
+    note = load_note(fit.states, hinge) if hinge else ""
+    if note:
+        fit = replace(fit, joint=replace(fit.joint, notes=(*fit.joint.notes, note)))
     save_joint(fit.joint, out)
-    return Report(_text(fit, out), _facts(fit, out))
+    return Report(_text(fit, out) + (f"\n\nnote: {note}" if note else ""), _facts(fit, out))
 
 
 def _facts(fit: MeasuredFit, out: Path) -> dict[str, Any]:

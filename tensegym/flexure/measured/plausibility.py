@@ -6,9 +6,11 @@ import numpy as np
 
 from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.flexure.hinge import States
+from tensegym.flexure import fem
+from tensegym.flexure.hinge import Hinge, States
 
 NEAR = 0.1  # of L: by so much the tip at rest may miss (L, 0)
+FAR = 10.0  # times the FEM's load: a unit, not a material that one takes for another of its kind
 SLOW, SURE = 0.02, 5.0  # of L a radian, and standard errors: below them the tip does not tell which way it goes
 
 
@@ -48,6 +50,27 @@ def _check_tips(seen: States, length: float) -> None:
         raise FlexureError(f"the tip goes to y = {1e3 * rate * span:.3g} mm where the angle goes to "
                            f"+{np.degrees(span):.3g} deg: y is counted downwards, or the angle clockwise; base axes "
                            "have y upwards and the angle counterclockwise: turn the sign of one of them")  # fmt: skip
+
+
+def load_note(states: States, hinge: Hinge) -> str:
+    """A line where the loads are far from those that the hinge's FEM takes at the same angle; "" where they are not.
+
+    The FEM is turned to the largest angle measured, by the wrench measured there, scaled.
+    """
+    loaded = states.pick(np.isfinite(states.force).all(axis=1) & (np.abs(states.moment) > 0) & (states.theta != 0))
+    if not len(loaded):
+        return ""
+    far = int(np.argmax(np.abs(loaded.theta)))
+    theta, moment = float(loaded.theta[far]), float(loaded.moment[far])
+    solution = fem.rotate(hinge, [theta], direction=[*loaded.force[far], moment])
+    if solution.status[0] != fem.CONVERGED:
+        return f"the FEM of this hinge cannot be turned to {np.degrees(theta):.3g} deg by the wrench measured there"
+    ratio = moment / float(solution.moment[0])
+    if 1 / FAR < ratio < FAR:
+        return ""
+    return (f"at {np.degrees(theta):.3g} deg the load is {ratio:.3g} times that of this hinge's FEM "
+            f"({hinge.material.modulus_name}, E = {hinge.material.youngs_modulus / 1e9:g} GPa): look at the unit of "
+            "load and angle, and at E")  # fmt: skip
 
 
 def _at_rest(states: States) -> tuple[FloatArray, float, float]:

@@ -10,7 +10,7 @@ from tensegym.flexure import fem
 from tensegym.flexure.fem.sampling import default_box, fit_states
 from tensegym.flexure.hinge import PAPER_HINGES, States, preset
 from tensegym.flexure.measured import fit_measured, read_measured
-from tensegym.flexure.measured.plausibility import check_measured
+from tensegym.flexure.measured.plausibility import check_measured, load_note
 from tests.conftest import assert_refused
 
 CASES = Path(__file__).parents[1] / "cases"
@@ -141,3 +141,25 @@ def test_separators_and_decimal_commas_are_read(text, tmp_path):
     states = read_measured(path)
     assert states.theta == pytest.approx(np.radians([1.5, 2]))
     assert states.moment == pytest.approx([-0.025, 0.003])
+
+
+@pytest.mark.parametrize(("change", "said"), [
+    (lambda s: s, None),
+    (lambda s: States(s.theta, s.tip, 1e3 * s.force, 1e3 * s.moment), "the load is 1e+03 times"),
+    (lambda s: States(s.theta / 57.3, s.tip, s.force, s.moment), "the load is"),
+])  # fmt: skip
+def test_loads_are_held_against_the_hinges_fem(change, said):
+    hinge = preset("leaf-spring")
+    theta = np.radians(np.linspace(-24, 24, 13))
+    for states in (fem.rotate(hinge, theta).states(),
+                   fem.rotate(hinge, theta, direction=fem.arm_direction(theta, 0.12)).states()):  # fmt: skip
+        note = load_note(change(states), hinge)
+        assert (note == "") if said is None else (said in note and "unit of " in note)
+
+
+def test_the_command_says_so_in_report_and_file(cli, tmp_path):
+    data, out = CASES / "measured_torque.csv", tmp_path / "o.json"
+    status, text, _ = cli("flexure", "fit", "leaf-spring", "--data", data, "--model", "torsion",
+                          "--youngs-modulus-GPa", 210, "--out", out)  # fmt: skip
+    assert status == 0 and "E = 210 GPa" in text and "note: at" in text
+    assert "times that of this hinge's FEM" in out.read_text()
