@@ -30,7 +30,7 @@ from tensegym.design.variation import variation
 from tensegym.processes import Pool
 from tensegym.report import table
 from tensegym.search.confirm import FIRST_SEED, TIME_STEP
-from tensegym.search.evaluate import Trial, try_all
+from tensegym.search.evaluate import TrialSpec, try_all
 from tensegym.search.loop import run_search
 from tensegym.search.problem import Problem, load_problem, problem_from
 from tensegym.search.store import Store
@@ -95,7 +95,7 @@ class Ranking:
         task = load_problem(self.task).task
         task = replace(task, dt=TIME_STEP, patience=task.seconds)
         seeds = [tuple(FIRST_SEED + s for s in part) for part in np.array_split(range(self.episodes), self.jobs)]
-        trials = [Trial(i, design_to_dict(design), controller, task, part) for i, part in enumerate(seeds)]
+        trials = [TrialSpec(i, design_to_dict(design), controller, task, part) for i, part in enumerate(seeds)]
         speeds = [e["speed_lps"] for tried in engine.map(try_all, trials) for e in tried.episodes]
         error = np.std(speeds, ddof=1) / np.sqrt(len(speeds))
         return {"mean": float(np.mean(speeds)), "error": float(error), "seconds": time.perf_counter() - begun}

@@ -26,7 +26,7 @@ from timing import in_turn, row
 from tensegym.processes import Pool
 from tensegym.report import table
 from tensegym.search.asker import Asker
-from tensegym.search.evaluate import Outcome, Trial, run_trial
+from tensegym.search.evaluate import TrialResult, TrialSpec, run_trial
 from tensegym.search.loop import run_search
 from tensegym.search.problem import load_problem
 from tensegym.search.store import Store
@@ -76,7 +76,7 @@ class Scaling:
     def _run_real(self) -> str:
         problem = load_problem(self.task)
         tables = problem.space.apply(problem.space.start)
-        trials = [Trial(i, tables["design"], tables["controller"], problem.task, (i, i + 1)) for i in range(20)]
+        trials = [TrialSpec(i, tables["design"], tables["controller"], problem.task, (i, i + 1)) for i in range(20)]
         with ExitStack() as stack:
             contestants = {}
             for workers in self.workers:
@@ -89,12 +89,12 @@ class Scaling:
         rows = [[r.name, r.ours, r.ratio, *r.spread] for r in found]
         return table(["workers", "trials/s", "over the first, median", "10 %", "90 %"], rows)
 
-    def _sleep(self, trial: Trial) -> Outcome:
+    def _sleep(self, trial: TrialSpec) -> TrialResult:
         time.sleep(self.seconds)
         return _told(trial.number)
 
 
-def _rate(pool: Pool, trials: list[Trial]) -> float:
+def _rate(pool: Pool, trials: list[TrialSpec]) -> float:
     begun = time.perf_counter()
     list(pool.map(run_trial, trials))
     return len(trials) / (time.perf_counter() - begun)
@@ -119,8 +119,8 @@ class Timed(Store):
         self.spent += time.thread_time() - begun
 
 
-def _told(number: int) -> Outcome:
-    return Outcome(number, {"speed_lps": (number * 0.618) % 1, "slip_share": 0.1, "sound": 1.0}, 1)
+def _told(number: int) -> TrialResult:
+    return TrialResult(number, {"speed_lps": (number * 0.618) % 1, "slip_share": 0.1, "sound": 1.0}, 1)
 
 
 def _ask_and_tell(task: str, batch: int) -> float:

@@ -13,8 +13,8 @@ from tensegym.cli.design import open_search
 from tensegym.report import table
 from tensegym.search.confirm import FIRST_SEED, TIME_STEP, pick
 from tensegym.search.engine import JoblibEngine
-from tensegym.search.evaluate import Trial, try_all
-from tensegym.search.task import Task
+from tensegym.search.evaluate import TrialSpec, try_all
+from tensegym.tasks.task import Task
 
 POLICY = {"policy": "onboard", "gain": 1.0, "amplitudes": [0.0, 0.0]}  # the default design's controller: it alone
 
@@ -61,7 +61,7 @@ def side_by_side(
 def tried(tables: dict[str, Any], task: Task, episodes: int) -> Tried:
     """A design and its controller, as tables, over new starts of a task."""
     seeds = tuple(FIRST_SEED + i for i in range(episodes))
-    rows = try_all(Trial(0, tables["design"], tables["controller"], task, seeds)).episodes
+    rows = try_all(TrialSpec(0, tables["design"], tables["controller"], task, seeds)).episodes
     speeds = np.array([e["speed_lps"] for e in rows])
     return Tried(
         float(speeds.mean()), float(speeds.std(ddof=1) / np.sqrt(len(speeds))),

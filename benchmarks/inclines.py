@@ -15,11 +15,11 @@ from pathlib import Path
 import tyro
 from grounds import Tried, side_by_side, tried
 
+from tensegym.control.policy import policy_env
 from tensegym.errors import InputError
 from tensegym.report import table
 from tensegym.search.confirm import TIME_STEP
 from tensegym.search.problem import load_problem
-from tensegym.train.controllers import policy_controller
 
 CLIMBED = 0.05  # L/s
 
@@ -56,7 +56,7 @@ class Inclines:
 
     def _climb(self, policy: str, slope: float) -> Tried:
         """A policy up a slope, with the body, the command period and the gain that it was trained with."""
-        env, task = policy_controller(policy).env, load_problem("climb").task
+        env, task = policy_env(policy), load_problem("climb").task
         task = replace(task, slope=slope, dt=TIME_STEP, patience=task.seconds)
         controller = {"policy": policy, "gain": 1.0, "amplitudes": [0.0, 0.0], "period": env["control_period"]}
         return tried({"design": env.get("design", {}), "controller": controller}, task, self.episodes)

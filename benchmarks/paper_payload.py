@@ -14,7 +14,7 @@ import tyro
 
 from tensegym.report import table
 from tensegym.search.confirm import FIRST_SEED, TIME_STEP, summary
-from tensegym.search.evaluate import Trial, try_all
+from tensegym.search.evaluate import TrialSpec, try_all
 from tensegym.search.problem import load_problem
 
 COLUMNS = ("speed_lps_median", "speed_lps_mean", "tips_median", "slip_share_median", "drive_load_largest",
@@ -37,7 +37,7 @@ class PaperPayload:
             for dt in (TIME_STEP, TIME_STEP / 2):
                 task = replace(carry.task, dt=dt, patience=carry.task.seconds)
                 seeds = tuple(FIRST_SEED + i for i in range(self.episodes))
-                found = summary(try_all(Trial(0, design, start["controller"], task, seeds)).episodes)
+                found = summary(try_all(TrialSpec(0, design, start["controller"], task, seeds)).episodes)
                 rows.append([name, 1e3 * dt, *(found[column] for column in COLUMNS)])
         header = ["robot", "dt ms", "median L/s", "mean L/s", "tips", "slip share", "drive load", "audit failures"]
         return table(header, rows)

@@ -11,20 +11,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import tyro
 
 from tensegym.cli.design import open_search
-from tensegym.control.tipping import current_face
 from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import design_from_dict
 from tensegym.processes import Pool
 from tensegym.report import table
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.search.confirm import FIRST_SEED, TIME_STEP, pick
-from tensegym.search.evaluate import Trial, start_of, try_all
-from tensegym.search.task import Task
+from tensegym.search.evaluate import TrialSpec, try_all
+from tensegym.tasks.episode import Episode
+from tensegym.tasks.goal import Neighbour
+from tensegym.tasks.task import Task
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ class Steps:
         rows = []
         for who, values in (("start", problem.space.start), (f"trial {best}", finished[best][0])):
             tables = problem.space.apply(values)
-            episodes = try_all(Trial(0, tables["design"], tables["controller"], task, seeds)).episodes
+            episodes = try_all(TrialSpec(0, tables["design"], tables["controller"], task, seeds)).episodes
             kinds = _kinds(design_from_dict(tables["design"]), task, seeds)
             for kind in sorted(set(kinds)):
                 arrived = [e["arrived"] for e, k in zip(episodes, kinds, strict=True) if k == kind]
@@ -58,8 +60,8 @@ def _kinds(design: RobotDesign, task: Task, seeds: Sequence[int]) -> list[str]:
     kinds = []
     with TensegrityRobot(design, dt=task.dt) as robot:
         for seed in seeds:
-            _, target = start_of(robot, task, seed)
-            both = robot.faces.closed[[current_face(robot), target]]
+            episode = Episode(robot, task, np.random.default_rng(seed))
+            both = robot.faces.closed[[episode.start.face, cast(Neighbour, episode.goal).face]]
             kinds.append(" onto ".join("closed" if closed else "open" for closed in both))
     return kinds
 

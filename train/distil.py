@@ -14,12 +14,12 @@ import numpy as np
 import tyro
 
 from tensegym.arrays import FloatArray, IntArray
+from tensegym.control.controller import angles_of
 from tensegym.control.cpg import Cpg, CpgController, cable_ends_in_heading, drive_kinds, feedback_text, pose_terms
-from tensegym.envs.rolling import RollingEnv
-
-from .controllers import policy_controller
-
-STEPS = 50  # of an episode
+from tensegym.control.policy import PolicyController
+from tensegym.robot.robot import TensegrityRobot
+from tensegym.tasks.policy_trials import EPISODE_SECONDS, policy_setup
+from tensegym.tasks.trials import iterate
 
 
 @dataclass(frozen=True)
@@ -36,34 +36,40 @@ class Distil:
     """File to write."""
 
     def run(self) -> str:
-        controller = policy_controller(self.policy)
-        terms: list[FloatArray] = []
-        commands: list[FloatArray] = []
-        speeds: list[float] = []
-        weights: FloatArray | None = None
-        with RollingEnv(**controller.env) as env:
-            episode = controller.start(env)
-            kinds = drive_kinds(env.robot.design)
-            for seed in range(self.rounds * self.episodes):
-                if seed and seed % self.episodes == 0:
-                    weights = fit(np.array(terms), np.array(commands), kinds)
-                observation, _ = env.reset(seed=seed)
-                act = episode(seed)
-                generator = None
-                if weights is not None:
-                    generator = CpgController(env.robot, Cpg(feedback=tuple(weights.ravel())), env.direction)
-                for _ in range(STEPS):
-                    action = np.clip(act(observation), -1, 1)
-                    terms.append(pose_terms(cable_ends_in_heading(env.robot, env.direction)))
-                    commands.append(action / 2)
-                    if generator:
-                        action = 2 * generator.angles() / env.robot.command_limit - 1
-                    observation, _, _, _, info = env.step(action)
-                speeds.append(info["gait"]["speed_lps"])
-        weights = fit(np.array(terms), np.array(commands), kinds)
-        self.out.write_text(feedback_text(weights))
-        means = np.mean(np.reshape(speeds, (self.rounds, self.episodes)), axis=1)
-        return f"{self.out}: mean speed round by round {', '.join(f'{m:.3f}' for m in means)} L/s"
+        setup = policy_setup(self.policy, seconds=EPISODE_SECONDS)
+        policy, kinds = PolicyController(self.policy), drive_kinds(setup.design)
+        examples, speeds = _Examples(policy), []
+        for number in range(self.rounds):
+            examples.generator = self._generator(examples, kinds) if number else None
+            seeds = range(number * self.episodes, (number + 1) * self.episodes)
+            speeds.append(np.mean([result.gait.speed_lps for result in iterate(setup, examples, seeds)]))
+        self.out.write_text(feedback_text(fit(np.array(examples.terms), np.array(examples.commands), kinds)))
+        return f"{self.out}: mean speed round by round {', '.join(f'{speed:.3f}' for speed in speeds)} L/s"
+
+    def _generator(self, examples: _Examples, kinds: IntArray) -> CpgController:
+        weights = fit(np.array(examples.terms), np.array(examples.commands), kinds)
+        return CpgController(Cpg(feedback=tuple(weights.ravel())))
+
+
+class _Examples:
+    """A controller that keeps what the policy commands in the poses that it is led to, by itself or by a generator."""
+
+    def __init__(self, policy: PolicyController) -> None:
+        self.policy, self.period = policy, policy.period
+        self.generator: CpgController | None = None
+        self.terms: list[FloatArray] = []
+        self.commands: list[FloatArray] = []
+
+    def begin(self, robot: TensegrityRobot, seed: int = 0) -> None:
+        self.policy.begin(robot, seed)
+        if self.generator:
+            self.generator.begin(robot, seed)
+
+    def angles(self, robot: TensegrityRobot, direction: FloatArray) -> FloatArray:
+        action = self.policy.action(robot, direction).astype(float)
+        self.terms.append(pose_terms(cable_ends_in_heading(robot, direction)))
+        self.commands.append(action / 2)
+        return self.generator.angles(robot, direction) if self.generator else angles_of(action, robot)
 
 
 def fit(terms: FloatArray, commands: FloatArray, kinds: IntArray) -> FloatArray:

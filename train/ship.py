@@ -11,6 +11,7 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
+from tensegym.control.policy import shipped
 from tensegym.errors import InputError
 
 FILES = ("config.yaml", "versions.json", "curve.csv", "curve.png", "vecnormalize.pkl")
@@ -30,7 +31,6 @@ class Ship:
         from stable_baselines3 import PPO
 
         from .config import load_config
-        from .controllers import shipped
 
         missing = [f for f in (*FILES, "model.zip", "state.json") if not (self.run / f).is_file()]
         if missing:

@@ -6,24 +6,22 @@ What the new observation has behind the old one's end begins with weights of zer
 from __future__ import annotations
 
 import pickle
-from pathlib import Path
 from typing import Any
 
 from stable_baselines3 import PPO
 from stable_baselines3.common.vec_env import VecNormalize
 
+from tensegym.control.policy import policy_env, policy_folder
 from tensegym.errors import InputError
 
 from .config import TrainConfig
-from .controllers import policy_controller
 
 
 def check_start(config: TrainConfig, observed: Any, driven: Any) -> None:
     """Refuse a start that an environment of these shapes cannot go on from. Raises InputError, FileNotFoundError."""
     assert config.start is not None
-    controller = policy_controller(config.start)
-    kinds = controller.env.get("observation", "full"), config.env.get("observation", "full")
-    model = PPO.load(_folder(config.start) / "model.zip", device="cpu")
+    kinds = policy_env(config.start).get("observation", "full"), config.env.get("observation", "full")
+    model = PPO.load(policy_folder(config.start) / "model.zip", device="cpu")
     own = model.observation_space.shape, model.action_space.shape
     hidden = list(model.policy_kwargs["hidden"])
     if kinds[0] != kinds[1] or own[0] > observed or own[1] != driven or hidden != list(config.hidden):
@@ -36,7 +34,7 @@ def check_start(config: TrainConfig, observed: Any, driven: Any) -> None:
 
 def begin_from(start: str, model: PPO, env: VecNormalize) -> None:
     """Give a fresh model the networks of a policy, and its environments that policy's running statistics."""
-    old = PPO.load(_folder(start) / "model.zip", device="cpu").policy.state_dict()
+    old = PPO.load(policy_folder(start) / "model.zip", device="cpu").policy.state_dict()
     new = model.policy.state_dict()
     for name, value in new.items():
         if name.endswith((".index", ".sign", ".back")):  # how the robot's rotations permute the new observation
@@ -45,12 +43,8 @@ def begin_from(start: str, model: PPO, env: VecNormalize) -> None:
         value.zero_()
         value[tuple(slice(n) for n in known.shape)] = known
     model.policy.load_state_dict(new)
-    with (_folder(start) / "vecnormalize.pkl").open("rb") as file:
+    with (policy_folder(start) / "vecnormalize.pkl").open("rb") as file:
         statistics = pickle.load(file)
     size = len(statistics.obs_rms.mean)
     env.obs_rms.mean[:size], env.obs_rms.var[:size] = statistics.obs_rms.mean, statistics.obs_rms.var
     env.obs_rms.count, env.ret_rms = statistics.obs_rms.count, statistics.ret_rms
-
-
-def _folder(start: str) -> Path:
-    return Path(policy_controller(start).path or "")

@@ -27,7 +27,7 @@ def symmetry_arguments(env: RollingEnv) -> dict[str, list[list[int]]]:
         source = {"node": np.argsort(g.nodes), "drive": np.argsort(g.drives),
                   "cable": np.argsort(g.cables), "rod": np.argsort(g.rods)}  # fmt: skip
         index, sign, start = [], [], 0
-        for part in env.observer.parts:
+        for part in env.observation.parts:
             rows = source.get(part.kind, np.arange(part.rows))  # what is the whole robot's stays
             index.append(start + (rows[:, None] * part.width + np.arange(part.width)).ravel())
             flip = g.rod_flips[rows] if part.name == "rod axis" else np.ones(part.rows, dtype=int)

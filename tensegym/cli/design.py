@@ -12,7 +12,7 @@ from typing import Any
 from tensegym.errors import InputError
 from tensegym.report import Report, table
 from tensegym.search.engine import check_engine, engine
-from tensegym.search.evaluate import Outcome
+from tensegym.search.evaluate import TrialResult
 from tensegym.search.loop import run_search
 from tensegym.search.problem import Problem, load_problem, problem_from
 from tensegym.search.store import Finished, Store, masked
@@ -53,7 +53,7 @@ class _Search:
         ):
             best = max((_score(problem, o) for _, o in done.values()), default=float("-inf"))
 
-            def progress(outcome: Outcome) -> None:
+            def progress(outcome: TrialResult) -> None:
                 nonlocal best
                 best = max(best, _score(problem, outcome))
                 if math.isfinite(best):
@@ -137,7 +137,7 @@ def open_search(folder: Path, storage: str | None = None) -> tuple[Problem, Stor
     return problem_from(store.problem_text, str(folder)), store
 
 
-def _score(problem: Problem, outcome: Outcome) -> float:
+def _score(problem: Problem, outcome: TrialResult) -> float:
     objective = problem.settings.objectives[0]
     if outcome.refused is not None or max(problem.losses(outcome.metrics)) > 0:
         return float("-inf")

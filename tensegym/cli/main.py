@@ -15,13 +15,13 @@ from tensegym.report import Report, to_json
 
 COMMANDS: dict[str, tuple[str, str]] = {
     # name: ("module:Class" or "module:COMMANDS" for a group, one line of help)
-    "roll": ("tensegym.train.evaluate:Roll", "watch the shipped policy roll: table, metrics.json, gait.png, roll.mp4"),
+    "roll": ("tensegym.cli.roll:Roll", "watch the shipped policy roll: table, metrics.json, gait.png, roll.mp4"),
     "step": ("tensegym.cli.step:Step", "tip from one face onto the next; --all-faces: which pull tips which face"),
     "simulate": ("tensegym.cli.simulate:Simulate", "drive-angle commands in, the whole motion out, as CSV"),
     "modes": ("tensegym.cli.modes:Modes", "free modes of a design, and the loads of its rods"),
     "validate": ("tensegym.cli.validate:Validate", "physics against closed forms: expected, measured, tolerance"),
     "train": ("tensegym.cli.train:Train", "train a rolling policy with PPO; resumable"),
-    "evaluate": ("tensegym.train.evaluate:Evaluate", "judge a policy and the baselines over many seeds"),
+    "evaluate": ("tensegym.cli.evaluate:Evaluate", "judge a policy and the baselines over many seeds"),
     "design": ("tensegym.cli.design:COMMANDS", "search for a design that makes a motion: run, resume, status"),
     "flexure": ("tensegym.cli.flexure:COMMANDS", "flexible joints: table, curves, fit, track, solve"),
 }

@@ -11,8 +11,9 @@ from typing import Annotated
 import numpy as np
 
 from tensegym.arrays import FloatArray
+from tensegym.control.playback import Playback
 from tensegym.design.design_file import as_design
-from tensegym.errors import InputError
+from tensegym.errors import DesignError, InputError
 from tensegym.files import replace_file
 from tensegym.physics import drives
 from tensegym.report import Report, table
@@ -55,21 +56,17 @@ class Simulate:
         if every < 1 or not math.isclose(every * self.dt, self.sample, rel_tol=1e-6):
             raise InputError(f"sample = {self.sample:g} s must be a whole number of steps of dt = {self.dt:g} s")
         with TensegrityRobot(design, dt=self.dt, ground=self.ground) as robot:
-            limit = robot.command_limit
-            over = np.argwhere((angles > limit * (1 + 1e-9)) | (angles < 0))
-            if len(over):
-                row, drive = over[0]
-                raise InputError(
-                    f"{self.commands}: drive_{drive + 1}_rad = {angles[row, drive]:g} at {times[row]:g} s is outside "
-                    f"[0, {limit[drive]:.4g}] rad"
-                )
             start_at(robot, self.start or robot.faces.names()[0], self.heading)
+            commands = Playback(times, angles, self.dt)
+            try:
+                commands.begin(robot)
+            except DesignError as error:
+                raise InputError(f"{self.commands}: {error}") from error
             meter = GaitMeter(robot, np.array([1.0, 0.0]))
             rows = [_row(robot)]
-            for tick in range(round((times[-1] - times[0]) / self.sample)):
-                for sub in range(every):
-                    now = times[0] + (tick * every + sub) * self.dt
-                    robot.command(np.array([np.interp(now, times, a) for a in angles.T]))
+            for _ in range(round((times[-1] - times[0]) / self.sample)):
+                for _ in range(every):
+                    robot.command(commands.angles(robot))
                     robot.step()
                 meter.update()
                 rows.append(_row(robot))

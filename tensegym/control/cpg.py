@@ -16,29 +16,33 @@ that one set serves all faces. Without the oscillators the feedback stalls where
 
 from __future__ import annotations
 
-import math
 import tomllib
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import tomli_w
+from numpy.typing import NDArray
 
 from tensegym.arrays import FloatArray, IntArray
 from tensegym.design.design import RobotDesign
-from tensegym.design.parameters import bounded, check_ranges
 from tensegym.design.symmetry import symmetries
 from tensegym.errors import DesignError
+from tensegym.robot.reading import heading_rotation
 from tensegym.robot.robot import TensegrityRobot
+from tensegym.tables import Checked, bounded
+
+if TYPE_CHECKING:
+    from .policy import PolicyController
 
 _PAIRS = np.triu_indices(6)
 TERMS = 6 + len(_PAIRS[0]) + 1  # linear, quadratic and constant terms of a drive's feedback
 
 
 @dataclass(frozen=True)
-class Cpg:
+class Cpg(Checked, error=DesignError):
     """Parameters of the generator. Raises DesignError naming the field that is out of its range.
 
     feedback: (kinds * TERMS,) weights, for each kind of drive in turn those of `pose_terms`; empty takes the fitted
@@ -51,17 +55,12 @@ class Cpg:
     entrainment: float = bounded(-100, 100, 0.0, "rad/s", "pull of the feedback on the phase")
     gain: float = bounded(0, 100, 2.0, "", "of the feedback")
     period: float = bounded(1e-3, 10, 0.4, "s", "a command is held for this long")
-    amplitudes: tuple[float, ...] = (0.4, 0.4)
-    lags: tuple[float, ...] = (0.0, 0.0)
-    feedback: tuple[float, ...] = ()
+    amplitudes: tuple[float, ...] = bounded(-1e3, 1e3, (0.4, 0.4), "", "of each kind of drive's oscillators")
+    lags: tuple[float, ...] = bounded(-1e3, 1e3, (0.0, 0.0), "rad", "of each kind of drive's phase")
+    feedback: tuple[float, ...] = bounded(-1e6, 1e6, (), "", "weights; none for the fitted ones")
 
     def __post_init__(self) -> None:
-        check_ranges(self)
-        for name in ("amplitudes", "lags", "feedback"):
-            values = tuple(getattr(self, name))
-            if not all(isinstance(v, int | float | np.number) and math.isfinite(v) for v in values):
-                raise DesignError(f"Cpg.{name} = {values!r} must be finite numbers")
-            object.__setattr__(self, name, values)
+        super().__post_init__()
         if not self.feedback:
             object.__setattr__(self, "feedback", fitted_feedback())
         kinds = len(self.amplitudes)
@@ -94,8 +93,7 @@ def drive_kinds(design: RobotDesign) -> IntArray:
 
 def cable_ends_in_heading(robot: TensegrityRobot, direction: FloatArray) -> FloatArray:
     """(w, 6) the two ends of every stiff cable from the centre of mass, in rod lengths; x along ``direction`` (2,)."""
-    c, s = direction
-    turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    turn = heading_rotation(direction)
     nodes = (robot.node_positions_in_world() - robot.centre_of_mass_in_world()) @ turn.T / robot.design.length
     return nodes[robot.design.standing.stiff_cables].reshape(-1, 6)
 
@@ -106,41 +104,45 @@ def pose_terms(ends: FloatArray) -> FloatArray:
 
 
 class CpgController:
-    """A generator driving a robot towards a direction (2,); starts with all phases at their lags.
+    """A generator as a controller; every episode starts with all phases at their lags.
 
-    feedback: called for the signals (w,), in place of the quadratic form. Raises DesignError where the robot has
-    another number of kinds of drives than the parameters.
+    Args:
+        parameters: of the generator.
+        policy: gives the feedback in place of the quadratic form, from -1/2 to 1/2 a drive.
     """
 
-    def __init__(
-        self, robot: TensegrityRobot, parameters: Cpg, direction: FloatArray,
-        feedback: Callable[[], FloatArray] | None = None,
-    ) -> None:  # fmt: skip
-        self.robot, self.parameters, self.direction = robot, parameters, direction
-        self._feedback = feedback or self._pose_feedback
-        kinds = drive_kinds(robot.design)
-        count = int(kinds.max()) + 1
-        if count != len(parameters.amplitudes):
-            raise DesignError(
-                f"the controller has weights for {len(parameters.amplitudes)} kinds of drives, the robot has {count}"
-            )
-        self._weights = np.array(parameters.feedback).reshape(count, TERMS)[kinds]
-        self._amplitudes = np.array(parameters.amplitudes)[kinds]
-        self._lags = np.array(parameters.lags)[kinds]
-        self.phases = self._lags.copy()
+    def __init__(self, parameters: Cpg | None = None, policy: PolicyController | None = None) -> None:
+        self.parameters = parameters or Cpg()
+        self._policy = policy
 
     @property
     def period(self) -> float:
         """A command is held for this long [s]."""
         return self.parameters.period
 
-    def _pose_feedback(self) -> FloatArray:
-        return (self._weights * pose_terms(cable_ends_in_heading(self.robot, self.direction))).sum(axis=1)
+    def begin(self, robot: TensegrityRobot, seed: int = 0) -> None:
+        """As `Controller` has it. Raises DesignError where the robot has another number of kinds of drives."""
+        p, kinds = self.parameters, drive_kinds(robot.design)
+        count = int(kinds.max()) + 1
+        if count != len(p.amplitudes):
+            raise DesignError(
+                f"the controller has weights for {len(p.amplitudes)} kinds of drives, the robot has {count}"
+            )
+        self._weights = np.array(p.feedback).reshape(count, TERMS)[kinds]
+        self._amplitudes, self._lags = np.array(p.amplitudes)[kinds], np.array(p.lags)[kinds]
+        self.phases = self._lags.copy()
+        if self._policy:
+            self._policy.begin(robot, seed)
 
-    def angles(self) -> FloatArray:
-        """Commanded spool angles (w,) [rad] for the next period; advances the oscillators by it."""
+    def _feedback(self, robot: TensegrityRobot, direction: FloatArray) -> NDArray[Any]:
+        if self._policy:
+            return self._policy.action(robot, direction) / 2
+        return (self._weights * pose_terms(cable_ends_in_heading(robot, direction))).sum(axis=1)
+
+    def angles(self, robot: TensegrityRobot, direction: FloatArray) -> FloatArray:
+        """As `Controller` has it; advances the oscillators by a period."""
         p = self.parameters
-        signal = self._feedback()
+        signal = self._feedback(robot, direction)
         part = np.clip(0.5 + p.gain * signal + self._amplitudes * np.cos(self.phases), 0, 1)
         steps = max(1, round(p.period / 0.02))
         for _ in range(steps):
@@ -148,4 +150,4 @@ class CpgController:
             pull = np.sin(ahead[None, :] - ahead[:, None]).mean(axis=1)
             rate = 2 * np.pi * p.frequency + p.coupling * pull - p.entrainment * signal * np.sin(self.phases)
             self.phases = self.phases + p.period / steps * rate
-        return part * self.robot.command_limit
+        return part * robot.command_limit

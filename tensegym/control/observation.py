@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
 from tensegym.design.variation import Variation
+from tensegym.errors import DesignError
 from tensegym.physics import drives
 from tensegym.physics.model import DAMPING, STIFFNESS
+from tensegym.robot.reading import NODE_REACH, Reading, heading_rotation, read
 from tensegym.robot.robot import SPEED_BOUND, TensegrityRobot
 
 
@@ -30,17 +34,11 @@ class Part:
         return self.rows * self.width
 
 
-def heading_rotation(direction: FloatArray) -> FloatArray:
-    """(3, 3) world to heading frame: x along the wanted direction (2,), z up."""
-    c, s = direction
-    return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
 class Observation:
     """Base: a fixed list of parts and one array laid out as them.
 
     Every entry is divided by a natural scale (rod length, rod lengths a second, a drive's limit), so that it is of
-    order one; bounds follow from when the environment ends an episode.
+    order one; the bounds hold since an episode whose nodes leave theirs has ended.
     """
 
     parts: tuple[Part, ...]
@@ -50,8 +48,13 @@ class Observation:
         """(size,) largest absolute value of each entry."""
         return np.concatenate([np.full(p.size, p.bound) for p in self.parts]).astype(np.float32)
 
-    def read(self, robot: TensegrityRobot, direction: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        raise TypeError("take FullObservation or OnboardObservation")
+    def values(self, robot: TensegrityRobot, reading: Reading, direction: FloatArray) -> FloatArray:
+        """(size,) what is seen of a robot, as it was just read, that is to go in a direction (2,)."""
+        raise NotImplementedError
+
+    def see(self, robot: TensegrityRobot, direction: FloatArray, reading: Reading | None = None) -> NDArray[np.float32]:
+        """(size,) the observation; pass the robot's reading where there is one already."""
+        return self.values(robot, read(robot) if reading is None else reading, direction).astype(np.float32)
 
 
 def _drive_readings(robot: TensegrityRobot) -> list[FloatArray]:
@@ -62,7 +65,6 @@ def _drive_readings(robot: TensegrityRobot) -> list[FloatArray]:
 
 
 ANGLE_BOUND = 2.0  # a spool overshoots its commanded range by less than half of it
-NODE_REACH = 2.0  # rod lengths from the centre of mass: twice what an intact six-rod robot spans
 
 
 class FullObservation(Observation):
@@ -89,22 +91,17 @@ class FullObservation(Observation):
             Part("tension", "cable", cables, 1, most),
         )
 
-    def read(self, robot: TensegrityRobot, direction: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The observation (size,), and the node positions (n, 3) and body velocities (b, 6) it was made from."""
-        velocities = robot.velocities_in_world()
-        nodes, speeds = robot.nodes_in_world(velocities)
+    def values(self, robot: TensegrityRobot, reading: Reading, direction: FloatArray) -> FloatArray:
+        """As `Observation` has it."""
         turn = heading_rotation(direction)
-        centre = robot.centre_of_mass_in_world()
-        centre[2] = 0.0
-        contact = nodes[:, 2] - robot.model.foot_radii <= 1e-3
-        values = np.concatenate([
-            ((nodes - centre) @ turn.T).ravel() / self.length,
-            (speeds @ turn.T).ravel() / self.length,
-            contact,
+        below = reading.centre * [1.0, 1.0, 0.0]
+        return np.concatenate([
+            ((reading.nodes - below) @ turn.T).ravel() / self.length,
+            (reading.node_velocities @ turn.T).ravel() / self.length,
+            robot.foot_contacts(),
             *_drive_readings(robot),
             robot.tensions / self.tension_scale,
         ])  # fmt: skip
-        return values, nodes, velocities
 
 
 class OnboardObservation(Observation):
@@ -126,21 +123,22 @@ class OnboardObservation(Observation):
             Part("drive current", "drive", wound, 1, 1.0),
         )
 
-    def read(self, robot: TensegrityRobot, direction: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """As FullObservation.read."""
-        velocities = robot.velocities_in_world()
+    def values(self, robot: TensegrityRobot, reading: Reading, direction: FloatArray) -> FloatArray:
+        """As `Observation` has it."""
         poses = robot.poses_in_world[: self.rods]
         axes = Rotation.from_quat(poses[:, 3:]).as_matrix()[:, :, 2]
-        rates = velocities[: self.rods, 3:]
+        rates = reading.velocities[: self.rods, 3:]
         rates = rates - (rates * axes).sum(axis=1)[:, None] * axes
         turn = heading_rotation(direction)
-        values = np.concatenate([
+        return np.concatenate([
             (axes @ turn.T).ravel(), (rates @ turn.T).ravel() / self.rate_scale, *_drive_readings(robot)
         ])  # fmt: skip
-        return values, robot.nodes_in_world(velocities)[0], velocities
 
 
-OBSERVATIONS = {"full": FullObservation, "onboard": OnboardObservation}
+OBSERVATIONS: dict[str, Callable[[TensegrityRobot], Observation]] = {
+    "full": FullObservation,
+    "onboard": OnboardObservation,
+}
 
 
 class ConditionedObservation(Observation):
@@ -148,16 +146,21 @@ class ConditionedObservation(Observation):
 
     def __init__(self, observation: Observation, robot: TensegrityRobot, variation: Variation) -> None:
         self._observation = observation
-        self._place = variation.place(robot.design)
+        self._place = variation.normalised(robot.design)
         self.parts = (*observation.parts, Part("design", "robot", len(self._place), 1, 1.0))
 
-    def read(self, robot: TensegrityRobot, direction: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """As FullObservation.read."""
-        values, nodes, velocities = self._observation.read(robot, direction)
-        return np.concatenate([values, self._place]), nodes, velocities
+    def values(self, robot: TensegrityRobot, reading: Reading, direction: FloatArray) -> FloatArray:
+        """As `Observation` has it."""
+        return np.concatenate([self._observation.values(robot, reading, direction), self._place])
 
 
-def observer(kind: str, robot: TensegrityRobot, variation: Variation | None = None) -> Observation:
-    """What reads a robot: one of OBSERVATIONS, with its design where designs vary."""
-    plain = OBSERVATIONS[kind](robot)
+def make_observation(kind: str, robot: TensegrityRobot, variation: Variation | None = None) -> Observation:
+    """What is seen of a robot: one of OBSERVATIONS, with its design where designs vary.
+
+    Raises:
+        DesignError: there is no such kind.
+    """
+    if kind not in OBSERVATIONS:
+        raise DesignError(f"observation = {kind!r} is not one of {', '.join(OBSERVATIONS)}")
+    plain: Observation = OBSERVATIONS[kind](robot)
     return ConditionedObservation(plain, robot, variation) if variation else plain

@@ -1,99 +1,92 @@
 """The open-loop walker: from a table of which pull tips which face where, the pull that leads nearest the heading.
 
-A table takes minutes to make for a design. `WalkerController` plays that of another design of the same topology.
+A table takes minutes to make for a design; that of another design of the same topology will do.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from tensegym.arrays import FloatArray
-from tensegym.design.parameters import bounded, check_ranges
 from tensegym.errors import DesignError, InputError
+from tensegym.robot.reading import heading_rotation
 from tensegym.robot.robot import TensegrityRobot
+from tensegym.tables import Checked, bounded
 
-from .tipping import Pull, Tip, current_face, face_direction
-
-
-class Walker:
-    """Looks at the face it stands on only when a pull is over; in between it plays commands blindly."""
-
-    def __init__(self, table: Sequence[Tip], played: Callable[[Pull], Pull] = lambda pull: pull) -> None:
-        """played: what becomes of a pull of the table on this robot."""
-        self._played = played
-        self._by_face: dict[int, list[Tip]] = {}
-        for tip in table:
-            if tip.tipped:
-                self._by_face.setdefault(tip.from_face, []).append(tip)
-        self._fallback = max(table, key=lambda tip: len(tip.pull.drives)).pull
-        self.restart()
-
-    def restart(self) -> None:
-        """Forget the pull in progress."""
-        self._pull: Pull | None = None
-        self._since = 0.0
-
-    def angles(self, robot: TensegrityRobot, direction: FloatArray) -> FloatArray:
-        """Commanded spool angles (w,) [rad] now; direction (2,) is the wanted heading in the world."""
-        if self._pull is None or robot.time - self._since >= self._pull.duration - 1e-9:
-            self._pull, self._since = self._played(self.choose(robot, direction)), robot.time
-        return self._pull.angles(robot, robot.time - self._since)
-
-    def choose(self, robot: TensegrityRobot, direction: FloatArray) -> Pull:
-        """The pull from the table whose travel points most along ``direction``; a deep one where none tips."""
-        face = current_face(robot)
-        tips = self._by_face.get(face)
-        if not tips:
-            return replace(self._fallback, depth=robot.design.stiff_cable.max_pull)
-        angle = face_direction(robot, face, robot.node_positions_in_world())
-        wanted = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]) @ direction
-        return max(tips, key=lambda tip: float(wanted @ tip.travel)).pull
+from .tipping import Pull, Tip, current_face, face_direction, tip_table
 
 
 @dataclass(frozen=True)
-class Playing:
+class WalkerSettings(Checked, error=DesignError):
     """How a table's pulls are played on a design. Raises DesignError naming the field that is out of its range."""
 
     depth: float = bounded(0, 1, 1.0, "", "of the table's deepest pull, as a part of max_pull", open_low=True)
     pull_time: float = bounded(0.1, 60, 2.0, "s", "wound in for this long")
     release_time: float = bounded(0.1, 60, 1.6, "s", "let out for this long")
 
-    def __post_init__(self) -> None:
-        check_ranges(self)
 
+class Walker:
+    """Looks at the face it stands on only when a pull is over; in between it plays commands blindly.
 
-class WalkerController:
-    """A walker driving a robot towards a direction (2,), with another design's table of tips played as told.
-
-    Raises DesignError where the robot has other numbers of faces or drives than the one the table is of.
+    Args:
+        table: of tips, of a design of the same topology; None makes the robot's own, which takes minutes.
+        settings: how its pulls are played.
+        period: a command is held for this long [s].
     """
 
-    period = 0.1  # s: a command is held for this long
+    def __init__(
+        self, table: Sequence[Tip] | None, settings: WalkerSettings | None = None, period: float = 0.1
+    ) -> None:
+        self._settings, self.period = settings or WalkerSettings(), period
+        self._table = table
 
-    def __init__(self, robot: TensegrityRobot, playing: Playing, direction: FloatArray, table: Sequence[Tip]) -> None:
-        tabled = 1 + max(tip.from_face for tip in table), 1 + max(max(tip.pull.drives) for tip in table)
+    def begin(self, robot: TensegrityRobot, seed: int = 0) -> None:
+        """As `Controller` has it. Raises DesignError where the table is of another number of faces or drives."""
+        if self._table is None:
+            with TensegrityRobot(robot.design, dt=robot.dt) as other:
+                self._table = tip_table(other)
+        tabled = 1 + max(tip.from_face for tip in self._table), 1 + max(max(t.pull.drives) for t in self._table)
         here = len(robot.faces.triangles), len(robot.drives)
-        if tabled != here:
+        if tabled[0] > here[0] or tabled[1] != here[1]:
             raise DesignError(
                 f"the walker's table is of a robot with {tabled[0]} faces and {tabled[1]} drives, this one has "
                 f"{here[0]} and {here[1]}; take the pattern generator (kind = 'cpg')"
             )
-        deepest = robot.design.stiff_cable.max_pull
-        scale = playing.depth * deepest / max(tip.pull.depth for tip in table)
+        self._deepest = robot.design.stiff_cable.max_pull
+        self._scale = self._settings.depth * self._deepest / max(tip.pull.depth for tip in self._table)
+        self._by_face: dict[int, list[Tip]] = {}
+        for tip in self._table:
+            if tip.tipped:
+                self._by_face.setdefault(tip.from_face, []).append(tip)
+        self._fallback = max(self._table, key=lambda tip: len(tip.pull.drives)).pull
+        self._pull: Pull | None = None
+        self._since = 0.0
 
-        def played(pull: Pull) -> Pull:
-            return Pull(pull.drives, min(scale * pull.depth, deepest), playing.pull_time, playing.release_time)
+    def angles(self, robot: TensegrityRobot, direction: FloatArray) -> FloatArray:
+        """As `Controller` has it."""
+        if self._pull is None or robot.time - self._since >= self._pull.duration - 1e-9:
+            self._pull, self._since = self._played(self.choose(robot, direction)), robot.time
+        return self._pull.angles(robot, robot.time - self._since)
 
-        self._walker, self._robot, self._direction = Walker(table, played), robot, direction
+    def _played(self, pull: Pull) -> Pull:
+        """What becomes of a pull of the table on this robot."""
+        depth = min(self._scale * pull.depth, self._deepest)
+        return Pull(pull.drives, depth, self._settings.pull_time, self._settings.release_time)
 
-    def angles(self) -> FloatArray:
-        """Commanded spool angles (w,) [rad] for the next period."""
-        return self._walker.angles(self._robot, self._direction)
+    def choose(self, robot: TensegrityRobot, direction: FloatArray) -> Pull:
+        """The pull from the table whose travel points most along ``direction``; a deep one where none tips."""
+        face = current_face(robot)
+        tips = self._by_face.get(face)
+        if not tips:
+            return replace(self._fallback, depth=self._deepest)
+        angle = face_direction(robot, face, robot.node_positions_in_world())
+        wanted = heading_rotation(np.array([np.cos(angle), np.sin(angle)]))[:2, :2] @ direction
+        return max(tips, key=lambda tip: float(wanted @ tip.travel)).pull
 
 
 def save_table(table: Sequence[Tip], path: Path) -> None:

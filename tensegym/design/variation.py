@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tensegym.arrays import FloatArray
-from tensegym.errors import DesignError, FlexureError, StructureError
+from tensegym.errors import DesignError, TensegymError
 from tensegym.tables import Error, Range, as_text, mapping, one_line, parse_toml, show
 
 from .design import RobotDesign
@@ -24,11 +24,11 @@ class Variation:
 
     ranges: Mapping[str, Range]
 
-    def place(self, design: RobotDesign) -> FloatArray:
+    def normalised(self, design: RobotDesign) -> FloatArray:
         """(v,) where a design lies in each range, -1 at low to 1 at high: what a policy sees of its robot."""
         return np.array([2 * r.part(_value(design, name)) - 1 for name, r in self.ranges.items()])
 
-    def put(self, design: RobotDesign, parts: FloatArray) -> RobotDesign:
+    def at(self, design: RobotDesign, parts: FloatArray) -> RobotDesign:
         """``design`` with its varied fields at parts (v,), 0 to 1, of their ranges. Raises as RobotDesign does."""
         changes: dict[str, Any] = {}
         for (name, r), part in zip(self.ranges.items(), parts, strict=True):
@@ -40,15 +40,15 @@ class Variation:
         """A random one; again where a combination of values makes no robot. Raises DesignError where none does."""
         for _ in range(TRIES):
             try:
-                return self.put(design, rng.uniform(size=len(self.ranges)))
-            except (DesignError, StructureError, FlexureError) as error:
+                return self.at(design, rng.uniform(size=len(self.ranges)))
+            except TensegymError as error:
                 refused = error
         raise DesignError(
             one_line(f"vary: {TRIES} designs drawn from the ranges were all refused, the last one: {refused}")
         )
 
 
-def variation(data: Any, design: RobotDesign) -> Variation:
+def parse_variation(data: Any, design: RobotDesign) -> Variation:
     """Ranges about a design, from a table or by the name of one that ships with the package.
 
     Args:

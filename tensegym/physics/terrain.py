@@ -19,6 +19,11 @@ CELLS_PER_LENGTH = 4  # grid cells a correlation length
 MOST_CELLS = 1000  # from the middle to an edge; the engine then holds four million heights
 
 
+def longest_reach(correlation_length: float) -> float:
+    """Largest reach of bumps of this correlation length [m]."""
+    return MOST_CELLS * correlation_length / CELLS_PER_LENGTH
+
+
 @dataclass(frozen=True)
 class Terrain(Checked, error=DesignError):
     """Bumps with the autocorrelation exp(-(r / correlation_length)^2), as surface metrology has Gaussian roughness.
@@ -33,10 +38,10 @@ class Terrain(Checked, error=DesignError):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.reach > MOST_CELLS * self.cell:
+        if self.reach > longest_reach(self.correlation_length):
             raise DesignError(
-                f"Terrain.reach = {self.reach!r} is over {MOST_CELLS * self.cell:g} m, {MOST_CELLS} cells of a quarter "
-                "of correlation_length; give less, or longer bumps"
+                f"Terrain.reach = {self.reach!r} is over {longest_reach(self.correlation_length):g} m, {MOST_CELLS} "
+                "cells of a quarter of correlation_length; give less, or longer bumps"
             )
 
     @property

@@ -50,6 +50,9 @@ class GaitMetrics:
         return {name: value if math.isfinite(value) else None for name, value in data.items()}
 
 
+NO_GAIT = GaitMetrics(0.0, 0.0, 0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, math.inf, 0.0)  # of a trial that never began
+
+
 class DriveMeter:
     """Watches the drives of a robot through a trial; call `update` once a control step."""
 
@@ -64,7 +67,7 @@ class DriveMeter:
         self._updates += 1
 
     @property
-    def load(self) -> float:
+    def rms_current(self) -> float:
         """Root mean square current of the hardest worked drive, as a part of the current limit."""
         return float(np.sqrt(self._squares.max(initial=0.0) / max(1, self._updates)))
 
@@ -98,7 +101,8 @@ class GaitMeter:
         self.tips += face != self.face
         self.face = face
         allowed = self._start_energy + robot.totals().drive_work - self._start_totals.drive_work
-        self._excess = max(self._excess, robot.energies(velocities).total / allowed - 1)
+        total = robot.energies(velocities).total
+        self._excess = max(self._excess, total / allowed - 1 if allowed else float(total > 0))
 
     def metrics(self) -> GaitMetrics:
         """The trial so far."""
@@ -117,6 +121,6 @@ class GaitMeter:
             slip_share_sum=(now.foot_path_sum - start.foot_path_sum) / path,
             energy=energy,
             drive_work=now.drive_work - start.drive_work,
-            cost_of_transport=energy / (self._weight * along) if along > 0 else float("inf"),
+            cost_of_transport=energy / (self._weight * along) if self._weight * along > 0 else math.inf,
             audit_excess=self._excess,
         )

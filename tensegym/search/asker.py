@@ -15,7 +15,7 @@ import optuna
 from optuna.distributions import BaseDistribution, CategoricalDistribution, FloatDistribution
 from optuna.trial import Trial, TrialState
 
-from .evaluate import Outcome
+from .evaluate import TrialResult
 from .measure import Objective
 from .problem import Problem
 from .space import Dimension, Value
@@ -54,7 +54,7 @@ class Asker:
         self._batch += 1
         return [dict(trial.params) for trial in self._asked]
 
-    def tell(self, outcomes: Sequence[Outcome]) -> None:
+    def tell(self, outcomes: Sequence[TrialResult]) -> None:
         """Outcomes of the whole batch, in the order asked. A refused design tells the sampler nothing but that."""
         for trial, outcome in zip(self._asked, outcomes, strict=True):
             if outcome.refused is not None:

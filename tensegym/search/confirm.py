@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from .engine import Engine
-from .evaluate import Episode, Trial, try_all
+from .evaluate import Episode, TrialSpec, try_all
 from .problem import Problem
 from .space import Tables
 from .store import Finished
@@ -58,8 +58,8 @@ def over_starts(
     chunks = [tuple(seeds[i : i + CHUNK]) for i in range(0, episodes, CHUNK)]
     keys = [(key, chunk) for key in wanted for chunk in chunks]
     trials = [
-        Trial(i, wanted[key]["design"], wanted[key]["controller"],
-              replace(problem.task, dt=key[-1], patience=problem.task.seconds), chunk)
+        TrialSpec(i, wanted[key]["design"], wanted[key]["controller"],
+              problem.task.changed(dt=key[-1], patience=problem.task.seconds), chunk)
         for i, (key, chunk) in enumerate(keys)
     ]  # fmt: skip
     results = {tried.number: tried.episodes for tried in engine.map(try_all, trials)}

@@ -11,7 +11,7 @@ from tensegym.errors import InputError
 
 from .asker import Asker
 from .engine import Engine
-from .evaluate import Outcome, Trial, run_trial
+from .evaluate import TrialResult, TrialSpec, run_trial
 from .problem import Problem
 from .space import Value
 from .store import Store
@@ -21,7 +21,7 @@ BARS_FROM = 4  # batches whose losses set the bar of the next one
 
 def run_search(
     problem: Problem, store: Store, engine: Engine, budget: int,
-    progress: Callable[[Outcome], None] | None = None, evaluate: Callable[[Trial], Outcome] = run_trial,
+    progress: Callable[[TrialResult], None] | None = None, evaluate: Callable[[TrialSpec], TrialResult] = run_trial,
 ) -> None:
     """Go on until ``budget`` trials are stored. Trials that are stored already are not run again.
 
@@ -69,9 +69,9 @@ def _bar(problem: Problem, losses: list[list[float]]) -> float:
     return float(np.quantile(recent, quantile))
 
 
-def _trial(problem: Problem, number: int, batch: int, values: dict[str, Value], bar: float) -> Trial:
+def _trial(problem: Problem, number: int, batch: int, values: dict[str, Value], bar: float) -> TrialSpec:
     settings = problem.settings
     tables = problem.space.apply(values)
     key = (settings.seed, batch if settings.fresh_starts else 0)
     seeds = np.random.SeedSequence(key).generate_state(settings.episodes)
-    return Trial(number, tables["design"], tables["controller"], problem.task, tuple(int(s) for s in seeds), bar)
+    return TrialSpec(number, tables["design"], tables["controller"], problem.task, tuple(int(s) for s in seeds), bar)

@@ -1,54 +1,14 @@
-"""What a search may ask for: metrics by name, bounds on them and objectives, as written in a task file."""
+"""What a search may ask for: objectives as written in a task file, and the metrics of several episodes as one set."""
 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Literal
 
 from tensegym.errors import InputError
-from tensegym.robot.gait import GaitMetrics
-
-METRICS = (*(f.name for f in fields(GaitMetrics)), "arrived", "drive_load", "mass")
-WORST_COST = 1e3  # what an infinite cost of transport counts as in a mean or an objective
-
-
-def known_metric(name: str) -> str:
-    """``name`` itself; raises InputError where no metric has it."""
-    if name not in METRICS:
-        raise InputError(f"no metric measures {name!r}; one of {', '.join(METRICS)}")
-    return name
-
-
-@dataclass(frozen=True)
-class Bound:
-    """A metric kept on one side of a limit: a goal or a constraint."""
-
-    metric: str
-    at_least: bool
-    limit: float
-
-    @classmethod
-    def parse(cls, text: object) -> Bound:
-        """From ``speed_lps >= 0.2`` or ``slip_share <= 0.3``. Raises InputError."""
-        match = re.fullmatch(r"\s*(\w+)\s*(>=|<=)\s*(\S+)\s*", text) if isinstance(text, str) else None
-        try:
-            limit = float(match[3]) if match else math.nan
-        except ValueError:
-            limit = math.nan
-        if not match or not math.isfinite(limit):
-            raise InputError(f"{text!r} is no bound; write METRIC >= NUMBER or METRIC <= NUMBER")
-        return cls(known_metric(match[1]), match[2] == ">=", limit)
-
-    def violation(self, metrics: Mapping[str, float]) -> float:
-        """How far on the wrong side, in units of the limit (of 1 where the limit is smaller); 0 or less is kept."""
-        short = self.limit - metrics[self.metric] if self.at_least else metrics[self.metric] - self.limit
-        return short / max(abs(self.limit), 1e-9) if self.limit else short
-
-    def __str__(self) -> str:
-        return f"{self.metric} {'>=' if self.at_least else '<='} {self.limit:g}"
+from tensegym.tasks.rollout import WORST_COST
 
 
 @dataclass(frozen=True)
@@ -60,11 +20,11 @@ class Objective:
 
     @classmethod
     def parse(cls, text: object) -> Objective:
-        """From ``max speed_lps`` or ``min mass``. Raises InputError."""
+        """From ``max speed_lps`` or ``min mass``. Raises InputError; whether there is such a metric the task knows."""
         words = text.split() if isinstance(text, str) else []
         if len(words) != 2 or words[0] not in ("max", "min"):
             raise InputError(f"{text!r} is no objective; write max METRIC or min METRIC")
-        return cls(known_metric(words[1]), words[0] == "max")
+        return cls(words[1], words[0] == "max")
 
     @property
     def direction(self) -> Literal["maximize", "minimize"]:

@@ -1,8 +1,8 @@
 """A search as written in a TOML file: task, start design, controller, space, and how to search.
 
-    task = "carry"                                          # or a [task] table, see tensegym.search.task
+    task = "carry"                                          # or a [task] table, see tensegym.tasks.task
     [design]                                                # where the search begins, as a design file
-    [controller]                                            # see tensegym.search.controllers
+    [controller]                                            # see tensegym.control.table
     [space]
     "design.elastic_cable.stiffness" = {low = 200.0, high = 800.0, log = true}
     "controller.feedback" = {spread = 1.0}                  # every entry, this far about its start
@@ -22,8 +22,9 @@ from typing import Any
 
 import tomli_w
 
+from tensegym.control.table import with_defaults
 from tensegym.design.design_file import design_from_dict, design_to_dict
-from tensegym.errors import DesignError, FlexureError, InputError, StructureError
+from tensegym.errors import InputError, TensegymError
 from tensegym.tables import (
     Checked,
     bounded,
@@ -38,11 +39,12 @@ from tensegym.tables import (
     read_text,
     show,
 )
+from tensegym.tasks.bound import Bound
+from tensegym.tasks.motions import as_task
+from tensegym.tasks.task import Task
 
-from .controllers import check_controller
-from .measure import Bound, Objective
+from .measure import Objective
 from .space import Space, Tables, space_from, written_out
-from .task import Task, task_from
 
 _TABLES = ("task", "design", "controller", "space", "search")
 SAMPLERS = ("cmaes", "tpe", "nsga2", "random")
@@ -104,6 +106,12 @@ class Problem:
         data["search"] = data.get("search", {}) | changes
         return problem_from(tomli_w.dumps(data), "the task file with the options given")
 
+    def __post_init__(self) -> None:
+        known = self.task.metrics()
+        for metric in [o.metric for o in self.settings.objectives] + [c.metric for c in self.settings.constraints]:
+            if metric not in known:
+                raise InputError(f"no metric measures {metric!r}; one of {', '.join(known)}")
+
     def losses(self, metrics: dict[str, float]) -> list[float]:
         """By how much each constraint is broken; 0 or less is kept. The first is that no episode is disqualified."""
         return [1.0 - metrics["sound"], *(bound.violation(metrics) for bound in self.settings.constraints)]
@@ -125,7 +133,7 @@ def problem_from(text: str, name: str) -> Problem:
     data = parse_toml(text, name, InputError)
     try:
         known(data, _TABLES, "the task file", InputError)
-        task = task_from(data.get("task"))
+        task = as_task(data.get("task"))
         tables = _start(task, data)
         limits = written_out(data.get("space"))
         if limits != data["space"]:  # in full, so that a search's copy of its file stands alone
@@ -134,7 +142,7 @@ def problem_from(text: str, name: str) -> Problem:
         _check_ends(space)
         settings = fill(Settings, data.get("search", {}), "search", InputError)
         return Problem(task, space, settings, text)
-    except (DesignError, StructureError, FlexureError, InputError) as error:
+    except TensegymError as error:
         raise InputError(one_line(f"{name}: {error}")) from error
 
 
@@ -151,7 +159,7 @@ def _whole(tables: Tables) -> Tables:
     design = design_from_dict(tables["design"])
     fields_of = design_to_dict(design)
     fields_of["structure"] = {"rod_length": design.length, "stiff_cables": fields_of["structure"]["stiff_cables"]}
-    return {"design": fields_of, "controller": check_controller(tables["controller"])}
+    return {"design": fields_of, "controller": with_defaults(tables["controller"])}
 
 
 def _check_ends(space: Space) -> None:
@@ -164,11 +172,11 @@ def _check_ends(space: Space) -> None:
             group = getattr(design, dimension.path[1], None) if dimension.path[0] == "design" else None
             try:
                 if dimension.path[0] == "controller":
-                    check_controller(tables["controller"])
+                    with_defaults(tables["controller"])
                 elif isinstance(group, Checked) and len(dimension.path) == 3 and not dimension.choices:
                     replace(group, **{dimension.path[2]: value})  # type: ignore[type-var]
                 else:
                     design_from_dict(tables["design"])
-            except (DesignError, StructureError, FlexureError) as error:
+            except TensegymError as error:
                 shown = dimension.choices[int(value)] if dimension.choices else f"{value:g}"
                 raise InputError(f"[space] {dimension.name!r} at {shown}: {error}") from error

@@ -18,7 +18,7 @@ from tensegym.design.design_file import design_from_dict, save_design
 from tensegym.design.urdf_writer import urdf_files
 
 from .confirm import FIRST_SEED, TIME_STEP, Confirmed, summary
-from .pictures import draw_best_gait, draw_importance, draw_pareto, draw_progress
+from .figures import draw_best_gait, draw_importance, draw_pareto, draw_progress
 from .problem import Problem
 from .store import Finished, Store
 from .winner import losses_of, pareto

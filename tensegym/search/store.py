@@ -19,11 +19,11 @@ from sqlalchemy.exc import SQLAlchemyError
 from tensegym.errors import InputError
 
 from .asker import Asker
-from .evaluate import Outcome
+from .evaluate import TrialResult
 from .problem import Problem
 from .space import Value
 
-Finished = dict[int, tuple[dict[str, Value], Outcome]]  # number of a trial: its values and outcome
+Finished = dict[int, tuple[dict[str, Value], TrialResult]]  # number of a trial: its values and outcome
 
 
 def masked(url: str) -> str:
@@ -81,7 +81,7 @@ class Store:
         """What `note` kept, or None."""
         return self._study.user_attrs.get(key)
 
-    def add(self, asker: Asker, values: dict[str, Value], outcome: Outcome) -> None:
+    def add(self, asker: Asker, values: dict[str, Value], outcome: TrialResult) -> None:
         """Write a finished trial."""
         refused = outcome.refused is not None
         self._study.add_trial(create_trial(
@@ -110,7 +110,7 @@ class Store:
         """Every trial that is done, by number."""
         found: Finished = {}
         for trial in self._study.get_trials(deepcopy=False):
-            outcome = Outcome(**trial.user_attrs["outcome"])
+            outcome = TrialResult(**trial.user_attrs["outcome"])
             found[outcome.number] = (dict(trial.params), outcome)
         return found
 

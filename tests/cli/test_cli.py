@@ -208,7 +208,9 @@ def test_the_walker_picks_the_pull_that_leads_nearest_the_direction(tips, headin
         robot.reset(0, heading)
         robot.step(250)
         wanted = np.array([np.cos(direction), np.sin(direction)])
-        pull = Walker(tips).choose(robot, wanted)
+        walker = Walker(tips)
+        walker.begin(robot)
+        pull = walker.choose(robot, wanted)
         start = robot.centre_of_mass_in_world()[:2]
         tip = run_pull(robot, pull)
         gained = wanted @ (robot.centre_of_mass_in_world()[:2] - start)

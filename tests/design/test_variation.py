@@ -11,7 +11,7 @@ from stable_baselines3.common.env_checker import check_env
 
 from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import as_design, design_to_dict
-from tensegym.design.variation import variation
+from tensegym.design.variation import parse_variation
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import DesignError
 from tensegym.search.problem import load_problem
@@ -24,7 +24,7 @@ VARY = {
 
 
 def place(design):
-    return variation(VARY, RobotDesign()).place(design)
+    return parse_variation(VARY, RobotDesign()).normalised(design)
 
 
 # -- ranges ------------------------------------------------------------------------------------------------------------
@@ -39,27 +39,27 @@ def test_a_design_outside_a_range_lies_at_its_nearer_end():
 @settings(max_examples=20)
 @given(st.lists(st.floats(0, 1), min_size=2, max_size=2))
 def test_a_design_lies_where_it_was_put(parts):
-    put = variation(VARY, RobotDesign()).put(RobotDesign(), np.array(parts))
+    put = parse_variation(VARY, RobotDesign()).at(RobotDesign(), np.array(parts))
     np.testing.assert_allclose(place(put), 2 * np.array(parts) - 1, atol=1e-9)
     back = put.with_(elastic_cable=RobotDesign().elastic_cable, stiff_cable=RobotDesign().stiff_cable)
     assert design_to_dict(back) == design_to_dict(RobotDesign())
 
 
 def test_draws_fill_the_ranges_and_repeat_with_their_seed():
-    ranges = variation(VARY, RobotDesign())
+    ranges = parse_variation(VARY, RobotDesign())
     rng = np.random.default_rng(0)
-    places = np.array([ranges.place(ranges.draw(RobotDesign(), rng)) for _ in range(100)])
+    places = np.array([ranges.normalised(ranges.draw(RobotDesign(), rng)) for _ in range(100)])
     assert places.min() < -0.9 and places.max() > 0.9
     assert np.abs(places.mean(axis=0)).max() < 0.25  # 4 standard errors of a uniform one
     again = ranges.draw(RobotDesign(), np.random.default_rng(0))
-    np.testing.assert_array_equal(ranges.place(again), places[0])
+    np.testing.assert_array_equal(ranges.normalised(again), places[0])
 
 
 def test_ranges_without_one_sound_design_say_so():
     # 30 N in cables of 1 to 2 N/m leave none of them a natural length
     hopeless = {"elastic_cable.stiffness": {"low": 1.0, "high": 2.0}}
     with pytest.raises(DesignError, match=r"were all refused, the last one: ElasticCable\.pretension"):
-        variation(hopeless, RobotDesign()).draw(RobotDesign(), np.random.default_rng(0))
+        parse_variation(hopeless, RobotDesign()).draw(RobotDesign(), np.random.default_rng(0))
 
 
 @pytest.mark.parametrize(
@@ -137,7 +137,7 @@ def test_a_policy_is_trained_on_the_designs_that_its_task_searches(config, task)
     env = load_config(config).env
     carry = load_problem(task)
     searched = {".".join(d.path[1:]): d.range for d in carry.space.dimensions if d.path[0] == "design"}
-    found = variation(env["vary"], as_design(env["design"]))
+    found = parse_variation(env["vary"], as_design(env["design"]))
     assert list(found.ranges.items()) == list(searched.items())
-    assert found == variation("payload_body", as_design(env["design"]))
+    assert found == parse_variation("payload_body", as_design(env["design"]))
     assert env["design"]["payload"]["mass"] == carry.task.payload

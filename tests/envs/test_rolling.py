@@ -85,7 +85,7 @@ def test_the_spec_goes_to_json_and_back():
     made = gym.make(ROLLING, design={"friction": 0.5}, reward={"slip": 0.1})
     again = gym.make(gym.envs.registration.EnvSpec.from_json(made.spec.to_json()))
     assert again.unwrapped.robot.design.friction == 0.5
-    assert again.unwrapped.weights.slip == 0.1
+    assert again.unwrapped.task.reward.slip == 0.1
     made.close()
     again.close()
 
@@ -295,12 +295,12 @@ def test_a_payload_env_observes_36_tensions():
         ({"control_period": math.inf}, r"control_period = inf is outside"),
         ({"control_period": "slow"}, r"control_period = 'slow' is outside"),
         ({"dt": 0.0}, r"dt = 0.0 is outside \[1e-06, 0.004\] s"),
-        ({"dt": math.nan}, r"dt = nan is outside"),
+        ({"dt": math.nan}, r"dt = nan is no finite number"),
         ({"settle": -0.1}, r"settle = -0.1 is outside \[0, 60\] s"),
-        ({"reward": {"speed": 1.0}}, "unknown reward weight .*speed.*; allowed: progress, slip, energy"),
-        ({"reward": {"slip": -1.0}}, r"RewardWeights.slip = -1.0 is outside \[0, 1000\]"),
-        ({"reward": {"slip": math.nan}}, r"RewardWeights.slip = nan is outside"),
-        ({"reward": {"slip": "much"}}, r"RewardWeights.slip = 'much' is outside"),
+        ({"reward": {"speed": 1.0}}, "unknown field 'speed' in reward; one of energy, progress, slip"),
+        ({"reward": {"slip": -1.0}}, r"reward.slip = -1.0 is outside \[0, 1000\]"),
+        ({"reward": {"slip": math.nan}}, "reward.slip = nan is no finite number"),
+        ({"reward": {"slip": "much"}}, "reward.slip = 'much' is a text, no number"),
         ({"render_mode": "ansi"}, "render_mode = 'ansi' is not one of"),
         ({"design": "seven_rod"}, "unknown preset 'seven_rod'"),
     ],
@@ -382,10 +382,29 @@ def test_a_diverged_simulation_ends_with_its_reason_and_the_env_goes_on(env):
     _check_ended(env, env.step(np.zeros(6)), "diverged at t = ", gait)
 
 
-def test_an_action_that_is_no_number_ends_the_episode_instead_of_being_observed(env):
+@pytest.mark.parametrize("action", [np.full(6, np.nan), [0, 0, 0, 0, 0, np.inf], None, "left", [[0] * 6], [0, [1]], {}])
+def test_what_is_no_action_is_refused_and_the_env_is_as_it_was(env, action):
+    wanted = rollout(env, 3)[0]
+    env.reset(seed=3)
+    for number, sound in enumerate(actions(3, 3)):
+        with pytest.raises(DesignError, match="action"):
+            env.step(action)
+        np.testing.assert_array_equal(env.step(sound)[0], wanted[number + 1])
+
+
+def test_a_step_before_the_first_reset_or_after_the_end_says_what_to_do():
+    env = RollingEnv(observation="onboard")
+    with pytest.raises(SimulationError, match=r"call reset\(\)"):
+        env.step(np.zeros(6))
     env.reset(seed=0)
-    gait = env.step(actions(1)[0])[4]["gait"]
-    _check_ended(env, env.step(np.full(6, np.nan)), "diverged at t = ", gait)
+    env.robot.natural_lengths[24:] = -1e4
+    assert env.step(np.zeros(6))[2]
+    with pytest.raises(SimulationError, match=r"has ended \(diverged .*call reset\(\)"):
+        env.step(np.zeros(6))
+    env.close()
+    for call in (lambda: env.step(np.zeros(6)), env.reset):
+        with pytest.raises(SimulationError, match="is closed"):
+            call()
 
 
 def test_a_robot_that_comes_apart_leaves_the_bounds_and_ends():
@@ -396,7 +415,7 @@ def test_a_robot_that_comes_apart_leaves_the_bounds_and_ends():
         env.robot.natural_lengths[:] = 1e3
         rod, client = env.robot.world.body_ids[0], env.robot.world.client
         pybullet.resetBaseVelocity(rod, [8, 0, 4], [0, 0, 0], physicsClientId=client)
-        _check_ended(env, env.step(-np.ones(6)), "left the observation's bounds (2 rod lengths", gait)
+        _check_ended(env, env.step(-np.ones(6)), "a node left its bound, 2 rod lengths", gait)
 
 
 def test_pictures_show_the_cables_in_the_colour_of_their_tension():

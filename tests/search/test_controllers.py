@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from tensegym.control.table import make_controller, with_defaults
 from tensegym.control.tipping import Pull, Tip
-from tensegym.control.walker import Playing, WalkerController
+from tensegym.control.walker import Walker, WalkerSettings
 from tensegym.design.design import RobotDesign
 from tensegym.errors import DesignError, InputError
 from tensegym.robot.robot import TensegrityRobot
-from tensegym.search.controllers import check_controller, controller
 from tensegym.search.evaluate import run_trial, try_all
 from tensegym.search.loop import _trial
 
@@ -30,18 +30,20 @@ def walking(tiny):
 
 def test_depths_are_parts_of_this_designs_deepest_pull():
     design = RobotDesign().with_(stiff_cable=RobotDesign().stiff_cable.__class__(max_pull=0.6))
-    playing = Playing(depth=0.5, pull_time=0.4, release_time=0.3)
+    settings = WalkerSettings(depth=0.5, pull_time=0.4, release_time=0.3)
     table = [Tip(Pull((0, 5), depth), 19, 0, (1.0, 0.0), 1.0) for depth in (0.2, 0.4)]
     with TensegrityRobot(design, dt=4e-3) as robot:
         robot.reset(19)
-        walker = WalkerController(robot, playing, AHEAD, table[1:])
+        walker = Walker(table[1:], settings)
+        walker.begin(robot)
         commands = []
         for _ in range(7):
-            commands.append(walker.angles() / robot.command_limit)
+            commands.append(walker.angles(robot, AHEAD) / robot.command_limit)
             robot.step(round(walker.period / robot.dt))
-        shallow = WalkerController(robot, playing, AHEAD, [table[0], Tip(Pull((1,), 0.4), 19, 19, (0.0, 0.0), 1.0)])
+        shallow = Walker([table[0], Tip(Pull((1,), 0.4), 19, 19, (0.0, 0.0), 1.0)], settings)
         robot.reset(19)
-        partly = shallow.angles() / robot.command_limit
+        shallow.begin(robot)
+        partly = shallow.angles(robot, AHEAD) / robot.command_limit
     np.testing.assert_allclose(commands, [[0.5, 0, 0, 0, 0, 0.5]] * 4 + [[0] * 6] * 3, atol=1e-12)
     np.testing.assert_allclose(partly, [0.25, 0, 0, 0, 0, 0.25], atol=1e-12)
 
@@ -62,29 +64,29 @@ def test_a_searched_depth_reaches_the_walker(walking):
 
 
 def test_every_field_has_its_default():
-    assert check_controller({"kind": "walker"}) == {
+    assert with_defaults({"kind": "walker"}) == {
         "kind": "walker", "depth": 1.0, "pull_time": 2.0, "release_time": 1.6
     }  # fmt: skip
-    assert check_controller({})["kind"] == check_controller({"kind": "cpg"})["kind"] == "cpg"
+    assert with_defaults({})["kind"] == with_defaults({"kind": "cpg"})["kind"] == "cpg"
 
 
 @pytest.mark.parametrize(
     ("table", "words"),
     [
-        ({"kind": "runner"}, "kind = 'runner' is not one of cpg, walker"),
-        ({"kind": "walker", "gain": 1.0}, "unknown field 'gain' .*one of kind, depth, pull_time, release_time"),
-        ({"depth": 1.0}, "unknown field 'depth' .*one of kind, policy, frequency"),
-        ({"kind": "walker", "depth": 1.2}, r"Playing.depth = 1.2 is outside \(0, 1\]"),
-        ({"kind": "walker", "pull_time": 0}, r"Playing.pull_time = 0.0 is outside \[0.1, 60\] s"),
+        ({"kind": "runner"}, "kind = 'runner' is not one of cpg, walker, policy, random"),
+        ({"kind": "walker", "gain": 1.0}, "unknown field 'gain' in controller; one of depth, pull_time, release_time"),
+        ({"depth": 1.0}, "unknown field 'depth' in controller"),
+        ({"kind": "walker", "depth": 1.2}, r"controller.depth = 1.2 is outside \(0, 1\]"),
+        ({"kind": "walker", "pull_time": 0}, r"controller.pull_time = 0 is outside \[0.1, 60\] s"),
     ],
 )
 def test_bad_controllers_are_refused(table, words):
     with pytest.raises(DesignError, match=words):
-        check_controller(table)
+        with_defaults(table)
 
 
 def test_a_bad_walker_is_refused_with_the_task_file(walking):
-    with pytest.raises(InputError, match=r"tiny: .*Playing\.release_time = -1.0 is outside"):
+    with pytest.raises(InputError, match=r"tiny: .*controller\.release_time = -1 is outside"):
         walking((PLAYED, 'kind = "walker"\nrelease_time = -1'))
 
 
@@ -97,4 +99,4 @@ def test_a_robot_that_the_table_is_not_of_is_refused():
         TensegrityRobot(design.with_(structure=fewer), dt=4e-3) as robot,
         pytest.raises(DesignError, match="20 faces and 6 drives, this one has 20 and 5; take"),
     ):
-        controller({"kind": "walker"})(robot, AHEAD)
+        make_controller({"kind": "walker"}).begin(robot, 0)

@@ -11,14 +11,16 @@ from tensegym.design.symmetry import symmetries
 from tensegym.errors import DesignError
 from tensegym.robot.gait import GaitMeter
 from tensegym.robot.robot import TensegrityRobot
-from tensegym.search.evaluate import Trial, evaluate, run_trial, try_all
+from tensegym.search.evaluate import TrialSpec, evaluate, run_trial, try_all
+
+AHEAD = np.array([1.0, 0.0])
 
 
 @pytest.fixture
 def trial(tiny):
     problem = tiny()
     tables = problem.space.apply(problem.space.start)
-    return Trial(3, tables["design"], tables["controller"], problem.task, (5, 6))
+    return TrialSpec(3, tables["design"], tables["controller"], problem.task, (5, 6))
 
 
 def test_an_episode_is_a_pure_function_of_its_four_arguments(trial):
@@ -41,7 +43,8 @@ def test_an_episode_without_a_tip_is_given_up(trial):
 
 
 def test_a_refused_design_costs_no_simulation(trial, monkeypatch):
-    monkeypatch.setattr(module, "TensegrityRobot", None)
+    monkeypatch.setattr(module, "rollout", None)
+    monkeypatch.setattr("tensegym.tasks.trials.TensegrityRobot", None)
     outcome = run_trial(replace(trial, design={"elastic_cable": {"pretension": 1e4}}))
     assert outcome.refused and "stretches a cable" in outcome.refused
     assert outcome.episodes == 0
@@ -65,14 +68,16 @@ def test_commands_turn_with_the_robot():
         robot.reset(2, 0.3)
         robot.step(40)
         direction = np.array([0.6, 0.8])
-        angles = CpgController(robot, Cpg(), direction).angles()
+        generator = CpgController()
+        generator.begin(robot)
+        angles = generator.angles(robot, direction)
         turned = []
         for symmetry in symmetries(design):
             # the same pose with the names of the nodes exchanged
             nodes = robot.node_positions_in_world()[np.argsort(symmetry.nodes)]
-            renamed = CpgController(robot, Cpg(), direction)
+            generator.begin(robot)
             robot.node_positions_in_world = lambda nodes=nodes: nodes  # type: ignore[method-assign]
-            turned.append(renamed.angles()[symmetry.drives])
+            turned.append(generator.angles(robot, direction)[symmetry.drives])
             del robot.node_positions_in_world
     assert len(turned) == 3
     assert np.ptp(angles) > 1
@@ -83,10 +88,11 @@ def test_commands_turn_with_the_robot():
 def test_coupling_brings_phases_to_their_lags():
     with TensegrityRobot(RobotDesign(), dt=4e-3) as robot:
         parameters = Cpg(lags=(0.0, 1.0), coupling=5.0, frequency=0.7)
-        controller = CpgController(robot, parameters, np.array([1.0, 0.0]))
+        controller = CpgController(parameters)
+        controller.begin(robot)
         controller.phases = controller.phases + np.array([0.5, -0.4, 0.2, 0.3, -0.6, 0.0])
         for _ in range(50):
-            controller.angles()
+            controller.angles(robot, AHEAD)
         ahead = controller.phases - np.array([0.0, 1.0])[drive_kinds(robot.design)]
     assert np.ptp(ahead) < 1e-6
     assert ahead.mean() == pytest.approx(2 * math.pi * 0.7 * 50 * 0.4, rel=1e-6)
@@ -94,7 +100,9 @@ def test_coupling_brings_phases_to_their_lags():
 
 def test_commands_stay_within_the_deepest_pull():
     with TensegrityRobot(RobotDesign(), dt=4e-3) as robot:
-        angles = CpgController(robot, Cpg(gain=100.0), np.array([1.0, 0.0])).angles()
+        generator = CpgController(Cpg(gain=100.0))
+        generator.begin(robot)
+        angles = generator.angles(robot, AHEAD)
         assert ((angles >= 0) & (angles <= robot.command_limit)).all()
 
 
@@ -109,7 +117,7 @@ def test_commands_stay_within_the_deepest_pull():
 )
 def test_bad_generators_are_refused(fields, words):
     with pytest.raises(DesignError, match=words), TensegrityRobot(RobotDesign(), dt=4e-3) as robot:
-        CpgController(robot, Cpg(**fields), np.array([1.0, 0.0]))
+        CpgController(Cpg(**fields)).begin(robot)
 
 
 def test_without_friction_a_robot_slides_down_a_slope_as_a_block_does():
@@ -144,3 +152,26 @@ def test_a_step_is_judged_by_the_face_it_was_to_reach(tiny):
     assert {e["tips"] for e in reached} == {0.0, 1.0}
     assert all(e["arrived"] <= e["tips"] for e in reached)
     assert sum(e["arrived"] for e in reached) > 0
+
+
+@pytest.mark.parametrize(
+    ("design", "why"),
+    [
+        ({"flexure": {"hinge": "nonsense"}}, "nonsense"),  # a FlexureError
+        ({"flexure": {"thickness": 1e-5}, "elastic_cable": {"pretension": 40.0}}, "buckles"),
+    ],
+)
+def test_what_a_trial_raises_is_its_result(trial, design, why):
+    outcome = run_trial(replace(trial, design=design))
+    assert why in outcome.refused and outcome.episodes == 0
+
+
+def test_a_trial_that_diverges_while_it_settles_is_no_way_and_no_error(trial):
+    outcome = run_trial(replace(trial, design={"elastic_cable": {"damping": 1e4}, "spin_damping": 1.0}))
+    assert outcome.refused is None
+    assert (outcome.metrics["sound"], outcome.metrics["speed_lps"]) == (0.0, 0.0)
+
+
+def test_without_gravity_there_is_no_cost_of_transport(trial):
+    outcome = run_trial(replace(trial, design={"gravity": 0.0}))
+    assert outcome.refused is None and outcome.metrics["cost_of_transport"] == 1e3

@@ -17,9 +17,9 @@ import torch
 import yaml
 from stable_baselines3 import PPO
 
+from tensegym.control.policy import load_policy
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
-from tensegym.train.controllers import load_policy
 from tensegym.train.ship import Ship
 from tests.conftest import assert_refused
 
@@ -134,14 +134,14 @@ def test_a_finished_run_goes_on_with_a_longer_schedule_and_says_so(tiny_run, tmp
     assert yaml.safe_load((run / "config.yaml").read_text())["steps"] == 4 * STEPS
     state = json.loads((run / "state.json").read_text())
     assert (state["steps"], state["stages"]) == (4 * STEPS, [3 * STEPS, 4 * STEPS])
-    monkeypatch.setattr("tensegym.train.controllers.shipped", lambda name: tmp_path / name)
+    monkeypatch.setattr("tensegym.train.ship.shipped", lambda name: tmp_path / name)
     shipped = Ship(run, "tiny")()
     first, second, _ = (shipped / "COMMAND").read_text().splitlines()
     assert first == "tensegym train --config tiny --seed 7"
     assert second.endswith(f"--steps {4 * STEPS}")
     env = RollingEnv(**yaml.safe_load((shipped / "config.yaml").read_text())["env"])
     observation, _ = env.reset(seed=0)
-    np.testing.assert_array_equal(load_policy(shipped, env)(observation), load_policy(run, env)(observation))
+    np.testing.assert_array_equal(load_policy(shipped)(observation), load_policy(run)(observation))
     env.close()
 
 
@@ -179,7 +179,7 @@ def test_a_folder_in_use_is_refused(tiny_run, tiny_config, cli):
         ("env: {observatoin: full}", ["observatoin"]),
         ("env_id: tensegym/Nothing-v0", ["tensegym/Nothing-v0"]),
         ("env: {control_period: 0}", ["control_period"]),
-        ("env: {reward: {slip: -1}}", ["RewardWeights.slip = -1"]),
+        ("env: {reward: {slip: -1}}", ["reward.slip = -1"]),
         ("env: 3", ["env = 3", "must be a table"]),
         ("stepss: 3", ["unknown field 'stepss'"]),
         ("steps: 1.5", ["steps = 1.5", "whole number"]),
@@ -239,10 +239,8 @@ def test_a_training_begins_as_the_policy_it_starts_from(tmp_path, tiny_config, t
     config = started(tmp_path, tiny_config, tiny_run, steps=STEPS, learning_rate=1e-12, final_learning_rate=1e-12,
                      env={"vary": VARY})  # fmt: skip
     assert cli("train", "--config", config, "--out", tmp_path / "run")[0] == 0
-    with RollingEnv(**yaml.safe_load(tiny_config.read_text())["env"]) as plain:
-        before = load_policy(tiny_run, plain)
+    before, after = load_policy(tiny_run), load_policy(tmp_path / "run")
     with RollingEnv(**yaml.safe_load(config.read_text())["env"]) as env:
-        after = load_policy(tmp_path / "run", env)
         observation, _ = env.reset(seed=1)
     assert np.abs(before(observation[:-1])).max() > 1e-6
     # the running statistics have moved by the few steps of this run

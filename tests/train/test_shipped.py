@@ -6,23 +6,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tensegym.control.policy import shipped
+from tensegym.tasks.policy_trials import FIRST_SEED, policy_setup
+from tensegym.tasks.trials import run_trials
 from tensegym.train.config import load_config
-from tensegym.train.controllers import policy_controller, shipped
-from tensegym.train.evaluate import FIRST_SEED
-from tensegym.train.trials import run_trials
 
 # rod lengths a second, of the median
 BARS = {"rolling": 0.12, "onboard": 0.07, "carry": 0.2, "climb": 0.03, "steep": 0.03, "conditioned": 0.15}
-ROBOTS = {"conditioned": policy_controller("carry").env}  # its own are drawn at random, and some of those cannot roll
 
 
 @pytest.mark.parametrize("name", BARS)
 def test_rolls_in_the_wanted_direction_without_sliding_or_free_energy(name):
-    rows = run_trials(policy_controller(name), range(FIRST_SEED, FIRST_SEED + 6), env=ROBOTS.get(name), quiet=True)
-    assert np.median([row["speed_lps"] for row in rows]) > BARS[name]
-    assert np.median([row["slip_share"] for row in rows]) < 0.6
-    assert np.median([row["tips"] for row in rows]) > 5
-    assert all(row["audit_passed"] and not row["terminated"] for row in rows)
+    setup = policy_setup(name)
+    if name == "conditioned":  # its own robots are drawn at random, and some of those cannot roll
+        setup = replace(setup, design=policy_setup("carry").design, vary=None)
+    results = run_trials(setup, range(FIRST_SEED, FIRST_SEED + 6), quiet=True)
+    assert np.median([result.gait.speed_lps for result in results]) > BARS[name]
+    assert np.median([result.gait.slip_share for result in results]) < 0.6
+    assert np.median([result.gait.tips for result in results]) > 5
+    assert all(result.sound for result in results)
 
 
 @pytest.mark.parametrize("name", BARS)

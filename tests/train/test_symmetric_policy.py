@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 from tensegym.design.design import Payload, RobotDesign
 from tensegym.design.symmetry import symmetries
 from tensegym.envs.rolling import RollingEnv
+from tensegym.robot.reading import read
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.train.symmetric_policy import SymmetricPolicy, symmetry_arguments
 
@@ -70,11 +71,11 @@ def test_the_observation_of_the_relabelled_robot_is_the_permuted_one(element, ki
         seen = []
         for h in (GROUP[0], g):
             env.robot.reset_rotated(START * Rotation.from_matrix(h.rotation).inv())
-            row = [env.observer.read(env.robot, env.direction)[0]]
+            row = [env.observation.values(env.robot, read(env.robot), env.episode.direction)]
             for action in np.random.default_rng(1).uniform(-1, 1, (steps, 6)):
                 env.robot.command((image(h, action) + 1) / 2 * env.robot.command_limit)
                 env.robot.step(150)
-                row.append(env.observer.read(env.robot, env.direction)[0])
+                row.append(env.observation.values(env.robot, read(env.robot), env.episode.direction))
             seen.append(np.array(row))
         np.testing.assert_allclose(seen[1], sign * seen[0][:, index], atol=1e-7)
         if element:

@@ -1,28 +1,35 @@
 """Trials and their summary, on rows made by hand and on a tiny policy."""
 
 import json
-import os
+from dataclasses import dataclass
 
 import imageio.v3 as imageio
 import numpy as np
 import pytest
 
-from tensegym.errors import InputError, SimulationError
+from tensegym.cli.evaluate import Evaluate
+from tensegym.cli.roll import Roll
+from tensegym.control.policy import PolicyController, load_policy
+from tensegym.errors import DesignError, SimulationError
 from tensegym.report import Report
-from tensegym.train.controllers import Controller, load_policy, policy_controller
-from tensegym.train.evaluate import Evaluate, Roll
-from tensegym.train.trials import run_trials, summarise
+from tensegym.robot.gait import GaitMetrics
+from tensegym.robot.robot import TensegrityRobot
+from tensegym.tasks.motions import as_task
+from tensegym.tasks.policy_trials import policy_setup
+from tensegym.tasks.roll import Roll as RollTask
+from tensegym.tasks.rollout import Result
+from tensegym.tasks.start import Start
+from tensegym.tasks.trials import Setup, run_trials, summarise
 from tests.conftest import assert_refused
 
 
-def row(speed, *, passed=True, terminated=False, cost=10.0):
-    return {"speed_lps": speed, "speed": 0.7 * speed, "slip_share": speed / 2, "slip_share_sum": speed, "tips": 4,
-            "cost_of_transport": cost, "audit_passed": passed, "audit_excess": 0.0 if passed else 0.02,
-            "terminated": terminated}  # fmt: skip
+def result(speed, *, passed=True, diverged=False, cost=10.0):
+    gait = GaitMetrics(20.0, 0.7 * speed, speed, 1.0, 4, speed / 2, speed, 1.0, 1.0, cost, 0.0 if passed else 0.02)
+    return Result(0, Start(0, 0.0, 0.0), gait, {}, "time limit", diverged)
 
 
 def test_summary_of_rows_made_by_hand():
-    summary = summarise([row(s) for s in (0.1, 0.2, 0.3, 0.4, 1.0)])
+    summary = summarise([result(s) for s in (0.1, 0.2, 0.3, 0.4, 1.0)])
     assert summary["episodes"] == 5
     assert summary["speed_lps_median"] == pytest.approx(0.3)
     assert summary["speed_lps_mean"] == pytest.approx(0.4)
@@ -37,8 +44,7 @@ def test_summary_of_rows_made_by_hand():
 
 
 def test_the_way_of_a_trial_that_fails_the_audit_or_diverges_does_not_count():
-    rows = [row(0.2), row(0.3), row(9.0, passed=False), row(8.0, terminated=True)]
-    summary = summarise(rows)
+    summary = summarise([result(0.2), result(0.3), result(9.0, passed=False), result(8.0, diverged=True)])
     assert summary["speed_lps_median"] == pytest.approx(0.1)  # of 0, 0, 0.2, 0.3
     assert summary["speed_lps_mean"] == pytest.approx(0.125)
     assert summary["speed_mps_median"] == pytest.approx(0.07)
@@ -48,42 +54,53 @@ def test_the_way_of_a_trial_that_fails_the_audit_or_diverges_does_not_count():
 
 
 def test_one_trial_has_no_interval_and_standing_still_has_no_cost():
-    summary = summarise([row(0.0, cost=None)])
+    summary = summarise([result(0.0, cost=np.inf)])
     assert summary["speed_lps_mean_ci95"] is None
     assert summary["cost_of_transport_median"] is None
     json.dumps(summary, allow_nan=False)
 
 
 def test_trials_are_the_same_over_one_process_and_two(tiny_run):
-    policy = policy_controller(str(tiny_run))
-    one = run_trials(policy, [3, 1, 2], seconds=2.0, jobs=1, quiet=True)
-    two = run_trials(policy, [3, 1, 2], seconds=2.0, jobs=2, quiet=True)
+    setup = policy_setup(str(tiny_run), seconds=2.0)
+    seeds = [3, 1, 2, 9, 8]
+    one, two = (run_trials(setup, seeds, jobs=jobs, quiet=True) for jobs in (1, 2))
     assert one == two
-    assert [r["seed"] for r in one] == [3, 1, 2]
-    assert len({r["path"] for r in one}) == 3
+    assert [r.seed for r in one] == seeds
+    assert len({r.gait.path for r in one}) == 5
 
 
 def test_random_commands_repeat_by_seed_whatever_ran_before():
-    controller = Controller("random", "random", None, {})
-    alone = run_trials(controller, [5], seconds=2.0, jobs=1, quiet=True)
-    after = run_trials(controller, [4, 5], seconds=2.0, jobs=1, quiet=True)
+    setup = Setup("random", as_task({"motion": "roll", "seconds": 2.0}), {"kind": "random"})
+    alone, after = (run_trials(setup, seeds, jobs=1, quiet=True) for seeds in ([5], [4, 5]))
     assert after[1] == alone[0]
-    assert after[0]["path"] != after[1]["path"]
+    assert after[0].gait.path != after[1].gait.path
 
 
 def test_what_fails_in_a_worker_is_raised_here(tmp_path):
+    setup = Setup("walker", as_task("roll"), {"kind": "walker", "tips": str(tmp_path / "none.json")})
     with pytest.raises(FileNotFoundError, match="no table of tips"):
-        run_trials(Controller("walker", "walker", str(tmp_path / "none.json"), {}), [1, 2], jobs=2, quiet=True)
+        run_trials(setup, range(8), jobs=2, quiet=True)
 
 
-class Quits(Controller):
-    def start(self, env):
-        os._exit(3)
+@dataclass(frozen=True, kw_only=True)
+class Breaks(RollTask):
+    """Every robot on an even face diverges while it settles."""
+
+    def begin(self, robot, start, rng):
+        if start.face % 2 == 0:
+            raise SimulationError("diverged, as some robots do")
+        return super().begin(robot, start, rng)
 
 
-def test_a_worker_that_dies_is_an_error_not_a_wait_for_ever():
-    with pytest.raises(SimulationError, match="a trial process ended with status 3"):
-        run_trials(Quits("policy", "quits", None, {}), [1, 2], jobs=2, quiet=True)
+def test_an_episode_that_diverges_is_a_result_and_the_next_one_is_as_if_alone():
+    wild, calm = (Setup("x", task(seconds=1.0, dt=0.004), {"kind": "random"}) for task in (Breaks, RollTask))
+    results, alone = (run_trials(setup, range(6), jobs=1, quiet=True) for setup in (wild, calm))
+    broken = [result.start.face % 2 == 0 for result in alone]
+    assert 0 < sum(broken) < 6
+    for result, other, bad in zip(results, alone, broken, strict=True):
+        assert result.diverged == bad and result.start == other.start
+        assert not result.sound and "while it settled: diverged" in result.ended if bad else result == other
+    assert summarise(results)["terminated"] == sum(broken)
 
 
 def test_evaluate_writes_metrics_picture_video_and_table(tiny_run, tmp_path, cli):
@@ -115,11 +132,12 @@ def test_evaluate_writes_metrics_picture_video_and_table(tiny_run, tmp_path, cli
 
 def test_one_episode_with_baselines_as_json(tiny_run, tmp_path, cli, monkeypatch):
     from tensegym.control.tipping import Pull, Tip
-    from tensegym.control.walker import save_table
+    from tensegym.control.walker import load_table, save_table
 
-    save_table([Tip(Pull((0, 1), 0.3), face, (face + 1) % 20, (0.1, 0.0), 10.0) for face in range(20)],
+    save_table([Tip(Pull((0, 5), 0.3), face, (face + 1) % 20, (0.1, 0.0), 10.0) for face in range(20)],
                tmp_path / "tips.json")  # fmt: skip
-    monkeypatch.setattr("tensegym.train.evaluate.shipped_table", lambda: str(tmp_path / "tips.json"))
+    table = load_table(tmp_path / "tips.json")
+    monkeypatch.setattr("tensegym.control.table._tips", lambda path: table)
     status, text, _ = cli("evaluate", "--policy", tiny_run, "--out", tmp_path / "e", "--episodes", 1, "--seconds", 1,
                           "--jobs", 1, "--no-half-step", "--no-video", "--json")  # fmt: skip
     assert status == 0
@@ -130,21 +148,19 @@ def test_one_episode_with_baselines_as_json(tiny_run, tmp_path, cli, monkeypatch
 
 
 def test_the_policy_acts_on_normalised_observations_and_repeats(tiny_run):
-    from tensegym.envs.rolling import RollingEnv
-
-    with RollingEnv(observation="onboard") as env:
-        act = load_policy(tiny_run, env)
-        observation, _ = env.reset(seed=0)
-        np.testing.assert_array_equal(act(observation), act(observation))
-        assert np.abs(act(observation) - act(observation + 0.5)).max() > 0
-        assert act(observation) in env.action_space
+    act = load_policy(tiny_run)
+    observation = np.random.default_rng(0).uniform(-1, 1, act.observed).astype(np.float32)
+    np.testing.assert_array_equal(act(observation), act(observation))
+    assert np.abs(act(observation) - act(observation + 0.5)).max() > 0
+    assert (np.abs(act(observation)) <= 1).all() and act(observation).shape == (6,)
 
 
 def test_a_policy_for_another_observation_is_refused(tiny_run, tmp_path, cli):
-    from tensegym.envs.rolling import RollingEnv
-
-    with RollingEnv() as env, pytest.raises(InputError, match=r"observations of shape \(54,\), here they are \(132,\)"):
-        load_policy(tiny_run, env)
+    with (
+        TensegrityRobot(dt=4e-3) as robot,
+        pytest.raises(DesignError, match=r"observations of shape \(54,\), here they are \(132,\)"),
+    ):
+        PolicyController(str(tiny_run), observation="full").begin(robot)
     out = tmp_path / "e"
     assert_refused(cli("evaluate", "--policy", tiny_run, "--observation", "full", "--out", out), "(54,)", "(132,)")
     assert not out.exists()

@@ -1,0 +1,94 @@
+"""`tensegym evaluate`: what a gait is worth, over many seeds, faces and headings."""
+
+from __future__ import annotations
+
+import json
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+from tensegym.control.table import make_controller
+from tensegym.errors import InputError
+from tensegym.files import replace_file
+from tensegym.report import Report, table
+from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP
+from tensegym.tasks.figures import GaitRecorder, draw_gait, write_video
+from tensegym.tasks.policy_trials import EPISODE_SECONDS, FIRST_SEED, baseline_setups, policy_setup
+from tensegym.tasks.rollout import rollout
+from tensegym.tasks.trials import Setup, check_setup, run_trials, summarise
+
+from .options import Count, Jobs, Within
+
+
+@dataclass(frozen=True)
+class Evaluate:
+    """Evaluate a policy and the baselines from random faces and headings; writes metrics.json, gait.png, roll.mp4."""
+
+    policy: str = "rolling"
+    """A run's folder, or a shipped policy: rolling, onboard, flexible, carry, climb, steep, conditioned."""
+    out: Path = Path("evaluation")
+    """Folder for metrics.json, gait.png and roll.mp4."""
+    episodes: Count = 100
+    """Episodes, each from a random face at a random heading towards a random direction."""
+    seconds: Annotated[float, Within(1.0, 3600.0, "s")] = EPISODE_SECONDS
+    """Length of an episode [s]."""
+    dt: Annotated[float, Within(LEAST_TIME_STEP, LARGEST_TIME_STEP, "s")] | None = None
+    """Physics time step [s]; default: the environment's."""
+    baselines: bool = True
+    """Also judge random commands and the open-loop walker on the same episodes."""
+    half_step: bool = True
+    """Also judge the policy at half the time step."""
+    observation: str | None = None
+    """Observation to evaluate with, in place of the policy's own."""
+    video: bool = True
+    """Write roll.mp4 of the first episode."""
+    jobs: Jobs | None = None
+    """Processes; default: one a core."""
+
+    def run(self) -> Report:
+        setup = policy_setup(self.policy, seconds=self.seconds, dt=self.dt, observation=self.observation)
+        check_setup(setup)  # a policy that does not fit fails here, before anything is written
+        if self.out.exists() and not self.out.is_dir():
+            raise InputError(f"--out {self.out} is a file; give a folder")
+        self.out.mkdir(parents=True, exist_ok=True)
+
+        dt = setup.task.dt
+        setups = {self.policy: setup}
+        if self.half_step:
+            setups[f"{self.policy}, half time step"] = setup.at(dt / 2)
+        if self.baselines:
+            setups |= baseline_setups(setup)
+        seeds = range(FIRST_SEED, FIRST_SEED + self.episodes)
+        results = {name: run_trials(each, seeds, jobs=self.jobs or 0) for name, each in setups.items()}
+        summaries = {name: summarise(each) for name, each in results.items()}
+        data = {"policy": self.policy, "dt": dt, "seconds": self.seconds, "summaries": summaries,
+                "episodes": {name: [result.row() for result in each] for name, each in results.items()}}  # fmt: skip
+        with replace_file(self.out / "metrics.json") as file:
+            json.dump(data, file, indent=1, allow_nan=False)
+        self._draw(setup, [result.gait.speed_lps for result in results[self.policy]])
+        return Report(_text(summaries), {"out": str(self.out), "dt": dt, "summaries": summaries})
+
+    def _draw(self, setup: Setup, speeds_lps: list[float]) -> None:
+        recorder = GaitRecorder(pictures=self.video)
+        with closing(setup.robot()) as robot:
+            rollout(robot, make_controller(setup.controller), setup.task, FIRST_SEED, watcher=recorder)
+        draw_gait(recorder, speeds_lps, self.out / "gait.png")
+        if self.video:
+            write_video(recorder.frames, self.out / "roll.mp4")
+
+
+def _text(summaries: dict[str, dict[str, Any]]) -> str:
+    header = ["controller", "median L/s", "mean L/s [95 %]", "over half median", "slip share", "(summed)", "tips",
+              "cost of transport", "audit failures"]  # fmt: skip
+    rows = []
+    for name, s in summaries.items():
+        interval = "[-]" if s["speed_lps_mean_ci95"] is None else "[{:.3f}, {:.3f}]".format(*s["speed_lps_mean_ci95"])
+        cost = s["cost_of_transport_median"]
+        rows.append([
+            name, f"{s['speed_lps_median']:.3f}", f"{s['speed_lps_mean']:.3f} {interval}",
+            f"{s['share_over_half_median']:.0%}", f"{s['slip_share_median']:.2f}",
+            f"{s['slip_share_sum_median']:.2f}", f"{s['tips_median']:.0f}",
+            "-" if cost is None else f"{cost:.0f}", f"{s['audit_failures']} of {s['episodes']}",
+        ])  # fmt: skip
+    return table(header, rows)

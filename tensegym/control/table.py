@@ -1,0 +1,107 @@
+"""Controllers by their table, as a task file or an evaluation names them.
+
+    [controller]
+    kind = "cpg"              # the pattern generator, the default
+    policy = "onboard"        # a shipped policy or a run's folder, in place of the quadratic feedback; default: none
+    gain = 1.0                # and the fields of tensegym.control.cpg.Cpg
+
+    kind = "walker"           # the open-loop walker
+    tips = ""                 # a file of `tensegym step --all-faces`; default: the default design's; "own": made now
+    depth = 1.0               # and the fields of tensegym.control.walker.WalkerSettings
+
+    kind = "policy"           # what PPO learned, alone
+    policy = "rolling"
+    observation = "onboard"   # default: as it was trained
+
+    kind = "random"           # the baseline
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from tensegym.errors import DesignError
+from tensegym.tables import as_text, bounded, fill, noted, show
+
+from .controller import Controller
+from .cpg import Cpg, CpgController
+from .policy import PolicyController, policy_folder, shipped
+from .random_commands import RandomCommands
+from .tipping import Tip
+from .walker import Walker, WalkerSettings, load_table
+
+OWN = "own"
+
+
+def make_controller(table: Mapping[str, Any]) -> Controller:
+    """The controller that a table describes.
+
+    Raises:
+        DesignError: a field is unknown or out of its range.
+        FileNotFoundError: a policy or a table of tips is not there.
+    """
+    kind, parameters = _parsed(table)
+    if kind == "cpg":
+        policy = table.get("policy")
+        return CpgController(parameters, PolicyController(policy) if policy else None)
+    if kind == "walker":
+        tips = table.get("tips", "")
+        return Walker(None if tips == OWN else _tips(tips), parameters, table.get("period", 0.1))
+    if kind == "policy":
+        return PolicyController(parameters.policy, parameters.observation, parameters.period)
+    return RandomCommands(parameters.period)
+
+
+def with_defaults(table: Mapping[str, Any]) -> dict[str, Any]:
+    """The table with every default in it. Raises as `make_controller`, but reads no network and makes no table."""
+    kind, parameters = _parsed(table)
+    policy = {"policy": table.get("policy", "")} if kind == "cpg" else {}
+    if named := policy.get("policy") or getattr(parameters, "policy", ""):
+        policy_folder(named)
+    besides = {name: table[name] for name in ("tips", "period") if name in table and kind == "walker"}
+    return {"kind": kind, **policy, **besides, **asdict(parameters)}
+
+
+@dataclass(frozen=True)
+class _PolicySettings:
+    policy: str = noted("rolling", "a shipped policy or a run's folder")
+    observation: str | None = noted(None, "in place of the policy's own")
+    period: float | None = bounded(1e-3, 60, None, "s", "of its commands, in place of the policy's own")
+
+
+@dataclass(frozen=True)
+class _RandomSettings:
+    period: float = bounded(1e-3, 60, 0.4, "s", "a command is held for this long")
+
+
+_KINDS: dict[str, tuple[type[Any], frozenset[str]]] = {
+    # the parameters of each kind, and what its table may hold besides
+    "cpg": (Cpg, frozenset({"policy"})),
+    "walker": (WalkerSettings, frozenset({"tips", "period"})),
+    "policy": (_PolicySettings, frozenset()),
+    "random": (_RandomSettings, frozenset()),
+}
+
+
+def _parsed(table: Mapping[str, Any]) -> tuple[str, Any]:
+    """Kind and parameters."""
+    kind = table.get("kind", "cpg")
+    if not isinstance(kind, str) or kind not in _KINDS:
+        raise DesignError(f"controller kind = {show(kind)} is not one of {', '.join(_KINDS)}")
+    parameters, besides = _KINDS[kind]
+    for name in besides & table.keys() - {"period"}:
+        as_text(table[name], f"controller {name}", DesignError)
+    if "period" in besides & table.keys():
+        fill(_RandomSettings, {"period": table["period"]}, "controller", DesignError)
+    own = {name: value for name, value in table.items() if name != "kind" and name not in besides}
+    return kind, fill(parameters, own, "controller", DesignError)
+
+
+@cache
+def _tips(path: str) -> list[Tip]:
+    """A table of tips, read once a process; the default design's where the path is empty."""
+    return load_table(Path(path) if path else shipped("walker") / "tips.json")

@@ -1,0 +1,26 @@
+"""What is to be done, and how well it was done.
+
+    task.py       Task: start, goal, ground, end, reward terms, metrics; the base class of all
+    roll.py       Roll; step_onto.py: StepOnto; motions.py: tasks by name, and from tables
+    goal.py       what an episode wants; start.py: where it begins; reward.py; bound.py
+    episode.py    Episode: one try, advanced a control step at a time; environments step one
+    rollout.py    rollout: a controller drives a robot through an episode
+    trials.py     run_trials: many of them over processes; summarise
+"""
+
+from .bound import Bound
+from .episode import Episode, Watcher
+from .goal import Goal, Heading
+from .motions import MOTIONS, as_task
+from .reward import RewardWeights, reward_terms
+from .roll import Roll
+from .rollout import Result, rollout
+from .start import Start
+from .step_onto import StepOnto
+from .task import Task
+from .trials import Setup, run_trials, summarise
+
+__all__ = [
+    "MOTIONS", "Bound", "Episode", "Goal", "Heading", "Result", "RewardWeights", "Roll", "Setup", "Start", "StepOnto",
+    "Task", "Watcher", "as_task", "reward_terms", "rollout", "run_trials", "summarise",
+]  # fmt: skip

@@ -1,0 +1,122 @@
+"""Episode: one try at a task on a robot, begun and then advanced a control step at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+import numpy as np
+
+from tensegym.arrays import FloatArray
+from tensegym.errors import SimulationError
+from tensegym.robot.gait import NO_GAIT, DriveMeter, GaitMeter, GaitMetrics
+from tensegym.robot.reading import NODE_REACH, Reading, farthest_node, read
+from tensegym.robot.robot import SPEED_BOUND, TensegrityRobot
+
+from .goal import Heading
+from .start import Start, check_options, draw_start
+from .task import Task
+
+
+class Watcher(Protocol):
+    """Looks at an episode while it goes on."""
+
+    period: float
+    """How often [s], as near as whole time steps of a control step come to it."""
+
+    def __call__(self, episode: Episode) -> None: ...
+
+
+class Episode:
+    """One try at a task, from a settled start.
+
+    A simulation that diverges, in the settling too, ends the episode: ``diverged`` and ``ended`` say so, and ``gait``
+    stays that of the last step that could be trusted.
+
+    Args:
+        robot: any state; it is reset.
+        task: what is to be done.
+        rng: draws the start, and what the task's goal needs.
+        options: face (index), heading [rad] and direction [rad] in place of what is drawn.
+
+    Raises:
+        DesignError: an option is none.
+    """
+
+    def __init__(
+        self, robot: TensegrityRobot, task: Task, rng: np.random.Generator, options: Mapping[str, Any] | None = None
+    ) -> None:
+        faces = len(robot.faces.triangles)
+        check_options(options or {}, faces)
+        self.robot, self.task = robot, task
+        self.start: Start = draw_start(faces, rng, options or {})
+        self.ended: str | None = None
+        """Why the episode is over; None while it goes on."""
+        self.diverged = False
+        self.gait: GaitMetrics = NO_GAIT
+        self.drives = DriveMeter(robot)
+        try:
+            self.goal = task.begin(robot, self.start, rng)
+            self.reading: Reading = read(robot)
+        except SimulationError as error:
+            self.goal = Heading.at(self.start.direction)
+            self._fail(f"while it settled: {error}")
+            return
+        self.meter = GaitMeter(robot, self.direction)
+        self.gait = self.meter.metrics()
+        self._totals = robot.totals()
+        self._along = float(self.direction @ self.reading.centre[:2])
+
+    @property
+    def direction(self) -> FloatArray:
+        """(2,) wanted heading now: a unit vector in the world's horizontal plane."""
+        return self.goal.direction(self.robot)
+
+    @property
+    def sound(self) -> bool:
+        """Whether what it did can be believed: it has not diverged, and keeps the energy audit."""
+        return not self.diverged and self.gait.audit_passed
+
+    def advance(self, angles: FloatArray, substeps: int, watcher: Watcher | None = None) -> dict[str, float]:
+        """Command spool angles (w,) [rad], hold them for so many time steps; returns the signed reward terms."""
+        robot = self.robot
+        try:
+            robot.command(angles)
+            self._step(substeps, watcher)
+            reading = read(robot)
+            self._check_whole(reading)
+        except SimulationError as error:
+            self._fail(str(error))
+            return self.task.rewards(self, 0.0, 0.0, 0.0)
+        self.reading = reading
+        self.meter.update(reading.nodes, reading.velocities)
+        self.drives.update()
+        self.gait = self.meter.metrics()
+        self.ended = self.task.over(self)
+        return self._rewards()
+
+    def _rewards(self) -> dict[str, float]:
+        totals, before, length = self.robot.totals(), self._totals, self.robot.design.length
+        along = float(self.direction @ self.reading.centre[:2])
+        progress, self._along, self._totals = along - self._along, along, totals
+        return self.task.rewards(
+            self, progress / length, (totals.foot_path - before.foot_path) / length,
+            totals.electrical_energy - before.electrical_energy,
+        )  # fmt: skip
+
+    def _step(self, substeps: int, watcher: Watcher | None) -> None:
+        parts = max(1, round(substeps * self.robot.dt / watcher.period)) if watcher else 1
+        for part in np.array_split(np.arange(substeps), parts):
+            self.robot.step(len(part))
+            if watcher:
+                watcher(self)
+
+    def _check_whole(self, reading: Reading) -> None:
+        reach = NODE_REACH * self.robot.design.length
+        if not farthest_node(reading) <= reach:
+            raise SimulationError(f"a node left its bound, {NODE_REACH:g} rod lengths from the centre of mass")
+        if not np.linalg.norm(reading.node_velocities, axis=1).max() <= SPEED_BOUND:
+            raise SimulationError(f"a node is faster than {SPEED_BOUND:g} m/s")
+
+    def _fail(self, reason: str) -> None:
+        self.diverged, self.ended = True, reason

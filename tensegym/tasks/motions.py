@@ -1,0 +1,71 @@
+"""The tasks by name, and a task from what a file or an argument gives."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from tensegym.errors import InputError
+from tensegym.tables import fill
+
+from .bound import Bound
+from .roll import Roll
+from .step_onto import StepOnto
+from .task import Task
+
+
+class Motion(NamedTuple):
+    """A task's class, and the defaults of its fields that are the motion's own."""
+
+    task: type[Task]
+    fields: Mapping[str, Any] = {}
+
+
+MOTIONS: dict[str, Motion] = {
+    "roll": Motion(Roll),
+    "step": Motion(StepOnto, {"seconds": 4.0}),
+    "climb": Motion(Roll, {"goal": Bound("speed_lps", True, 0.05), "slope": 10.0}),
+    "cross": Motion(Roll, {"roughness": 0.02}),
+    "carry": Motion(Roll, {"payload": 0.5}),
+}
+
+
+def as_task(value: Any) -> Task:
+    """A task from itself, a motion's name, or a table that names one and changes its fields.
+
+    Args:
+        value: the task, its name, or its table: a name is one of MOTIONS, or ``package.module:Class`` for a task of
+            your own; a table holds it as ``motion``, with the fields of the task beside it.
+
+    Raises:
+        InputError: there is no such motion or field, or a field is outside its range.
+    """
+    if isinstance(value, Task):
+        return value
+    table = {"motion": value} if isinstance(value, str) else value
+    if not isinstance(table, Mapping) or not isinstance(table.get("motion"), str):
+        given = table.get("motion") if isinstance(table, Mapping) else table
+        raise InputError(f"task motion {str(given)[:100]!r} is not one of {', '.join(MOTIONS)}, or module:Class")
+    return _task_from(table)
+
+
+def _task_from(table: Mapping[str, Any]) -> Task:
+    motion = _motion(table["motion"])
+    base = motion.task(motion=table["motion"], **motion.fields)
+    return fill(motion.task, dict(table), "[task]", InputError, base)
+
+
+def _motion(name: str) -> Motion:
+    if name in MOTIONS:
+        return MOTIONS[name]
+    module, _, attribute = name.partition(":")
+    if not attribute:
+        raise InputError(f"task motion {name[:100]!r} is not one of {', '.join(MOTIONS)}, or module:Class")
+    try:
+        found = getattr(importlib.import_module(module), attribute)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise InputError(f"task motion {name[:100]!r} cannot be imported: {error}") from error
+    if not (isinstance(found, type) and issubclass(found, Task)):
+        raise InputError(f"task motion {name[:100]!r} is no subclass of tensegym.Task")
+    return Motion(found)
