@@ -20,6 +20,13 @@ Robots:
     GaitMeter         measures a motion while a robot makes it
     GaitMetrics       what it measured: speed, tips, slip, energy, the energy audit
 
+Tasks:
+    Task              what is to be done: start, goal, ground, end, reward, metrics; the base class of your own
+    as_task           a task by its name ("roll", "climb", "step", ...) or from a table
+    rollout           one episode of a controller at a task on a robot
+    load_policy       a shipped policy, or your own run's, as a function of the observation
+    evaluate          figures of a policy over many episodes
+
 Flexible joints:
     fit_joint         joint models fitted to a hinge's finite elements, with their errors
     load_joint        a fitted joint from its JSON file
@@ -42,6 +49,7 @@ from typing import TYPE_CHECKING, Any
 from tensegym import envs as envs
 
 if TYPE_CHECKING:
+    from tensegym.control.policy import load_policy
     from tensegym.design.design import RobotDesign
     from tensegym.design.design_file import load_design
     from tensegym.errors import (
@@ -57,14 +65,16 @@ if TYPE_CHECKING:
     from tensegym.physics.terrain import Terrain
     from tensegym.robot.gait import GaitMeter, GaitMetrics
     from tensegym.robot.robot import TensegrityRobot
+    from tensegym.tasks import Task, as_task, evaluate, rollout
 
 __all__ = [
     "DesignError", "FlexibleRobot", "FlexureError", "GaitMeter", "GaitMetrics", "InputError", "RobotDesign",
-    "SimulationError", "StructureError", "TensegrityRobot", "TensegymError", "Terrain", "fit_joint", "load_design",
-    "load_joint",
+    "SimulationError", "StructureError", "Task", "TensegrityRobot", "TensegymError", "Terrain", "as_task", "evaluate",
+    "fit_joint", "load_design", "load_joint", "load_policy", "rollout",
 ]  # fmt: skip
 
 _HOMES = {
+    "control.policy": ("load_policy",),
     "design.design": ("RobotDesign",),
     "design.design_file": ("load_design",),
     "errors": ("DesignError", "FlexureError", "InputError", "SimulationError", "StructureError", "TensegymError"),
@@ -73,6 +83,7 @@ _HOMES = {
     "physics.terrain": ("Terrain",),
     "robot.gait": ("GaitMeter", "GaitMetrics"),
     "robot.robot": ("TensegrityRobot",),
+    "tasks": ("Task", "as_task", "evaluate", "rollout"),
 }
 
 __version__ = version("tensegym")

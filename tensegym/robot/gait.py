@@ -104,11 +104,16 @@ class GaitMeter:
         total = robot.energies(velocities).total
         self._excess = max(self._excess, total / allowed - 1 if allowed else float(total > 0))
 
+    @property
+    def displacement(self) -> FloatArray:
+        """(3,) of the centre of mass since the trial began, in the world [m]."""
+        return self.robot.centre_of_mass_in_world() - self._start
+
     def metrics(self) -> GaitMetrics:
         """The trial so far."""
         robot, start, now = self.robot, self._start_totals, self.robot.totals()
         duration = max(robot.time - self._start_time, robot.dt)
-        along = float(self.direction @ (robot.centre_of_mass_in_world() - self._start)[:2])
+        along = float(self.direction @ self.displacement[:2])
         path = max(now.centre_path - start.centre_path, 1e-9)
         energy = now.electrical_energy - start.electrical_energy
         return GaitMetrics(

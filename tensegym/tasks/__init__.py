@@ -6,12 +6,14 @@
     episode.py    Episode: one try, advanced a control step at a time; environments step one
     rollout.py    rollout: a controller drives a robot through an episode
     trials.py     run_trials: many of them over processes; summarise
+    policy_trials.py  evaluate: those of a policy, as it was trained
 """
 
 from .bound import Bound
 from .episode import Episode, Watcher
 from .goal import Goal, Heading
 from .motions import MOTIONS, as_task
+from .policy_trials import evaluate, policy_setup
 from .reward import RewardWeights, reward_terms
 from .roll import Roll
 from .rollout import Result, rollout
@@ -22,5 +24,5 @@ from .trials import Setup, run_trials, summarise
 
 __all__ = [
     "MOTIONS", "Bound", "Episode", "Goal", "Heading", "Result", "RewardWeights", "Roll", "Setup", "Start", "StepOnto",
-    "Task", "Watcher", "as_task", "reward_terms", "rollout", "run_trials", "summarise",
+    "Task", "Watcher", "as_task", "evaluate", "policy_setup", "reward_terms", "rollout", "run_trials", "summarise",
 ]  # fmt: skip
