@@ -19,10 +19,11 @@ from tensegym.design.variation import parse_variation
 from tensegym.errors import DesignError, SimulationError
 from tensegym.robot.rendering import draw_in_window, render
 from tensegym.robot.robot import TensegrityRobot
+from tensegym.tables import as_whole, known, show
 from tensegym.tasks.episode import Episode
 from tensegym.tasks.motions import as_task
 from tensegym.tasks.rollout import whole_steps
-from tensegym.tasks.start import OPTIONS
+from tensegym.tasks.start import OPTIONS, check_options
 from tensegym.tasks.task import Task
 
 from . import CONTROL_PERIOD
@@ -131,11 +132,15 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         """Start an episode; see the class for the options. Raises DesignError, or SimulationError where no design
         of those tried comes to rest."""
         self._check_open()
-        super().reset(seed=seed)
-        options = dict(options or {})
-        unknown = set(options) - {"design", *OPTIONS}
-        if unknown:
-            raise DesignError(f"unknown reset option {sorted(unknown)[0]!r}; allowed: design, {', '.join(OPTIONS)}")
+        if seed is not None:
+            seed = as_whole(seed, "seed", DesignError, "a whole number, 0 or more")
+        options = dict(known({} if options is None else options, ("design", *OPTIONS), "reset options", DesignError))
+        if "design" not in options:
+            check_options(options, len(self.robot.faces.triangles))
+        try:
+            super().reset(seed=seed)
+        except gym.error.Error as error:
+            raise DesignError(f"seed = {show(seed)}: {error}") from error
         if self.episode and self.episode.diverged:  # what is left in the engine's caches may be no numbers either
             self._use(self.robot.design)
         design, redraw = options.pop("design", None), False
@@ -222,8 +227,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         shape = self.action_space.shape
         try:
             values = np.asarray(action, dtype=float)
-        except (TypeError, ValueError):
-            raise DesignError(f"an action has shape {shape}, one number a drive; given {action!r:.100}") from None
+        except (TypeError, ValueError, OverflowError):
+            raise DesignError(f"an action has shape {shape}, one number a drive; given {show(action)}") from None
         if values.shape != shape:
             raise DesignError(f"an action has shape {shape}, one entry a drive; given {values.shape}")
         if not np.isfinite(values).all():

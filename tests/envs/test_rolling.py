@@ -313,18 +313,26 @@ def test_bad_arguments_name_the_argument(arguments, words):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"faces": 1}, "unknown reset option 'faces'; allowed: design, face, heading, direction"),
+        ({"faces": 1}, "unknown field 'faces' in reset options; did you mean 'face'"),
         ({"face": 20}, r"face = 20 is outside 0\.\.19"),
         ({"face": 1.5}, "face = 1.5 must be a whole number"),
         ({"heading": math.nan}, "heading = nan must be a finite angle"),
         ({"direction": "north"}, "direction = 'north' must be a finite angle"),
         ({"design": "nope"}, "unknown preset 'nope'"),
+        ("face", "reset options = 'face' must be a table"),
+        ([1], "must be a table"),
     ],
 )
 def test_bad_reset_options_name_the_option(env, options, words):
     with pytest.raises(DesignError, match=words):
         env.reset(options=options)
     assert env.reset(seed=0)[0] in env.observation_space
+
+
+@pytest.mark.parametrize("seed", [1.5, -1, "one", True])
+def test_a_seed_that_is_none_is_refused(env, seed):
+    with pytest.raises(DesignError, match="seed = "):
+        env.reset(seed=seed)
 
 
 @pytest.mark.parametrize("width", [1, 5, 7])
