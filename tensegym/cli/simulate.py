@@ -10,7 +10,7 @@ from typing import Annotated
 
 import numpy as np
 
-from tensegym.arrays import FloatArray
+from tensegym.control.commands_file import read_commands
 from tensegym.control.playback import Playback
 from tensegym.design.design_file import as_design
 from tensegym.errors import DesignError, InputError
@@ -29,7 +29,7 @@ class Simulate:
     """Simulate a robot under commanded drive angles and write everything it did as CSV."""
 
     commands: Path
-    """CSV: time_s, then drive_1_rad to drive_6_rad, the commanded spool angles; even time steps, linear in between."""
+    """CSV: time_s, then drive_1_rad to drive_6_rad, the commanded spool angles; growing times, linear in between."""
     out: Path
     """CSV to write: nodes, rod quaternions, tensions, drives, energies."""
     design: str = "six_rod"
@@ -81,54 +81,6 @@ class Simulate:
                      [[str(self.out), len(rows), len(header), gait.path, gait.tips, gait.slip_share, gait.energy,
                        gait.audit_excess]])  # fmt: skip
         return Report(text, data)
-
-
-def read_commands(path: Path, count: int) -> tuple[FloatArray, FloatArray]:
-    """Times (t,) [s] and commanded spool angles (t, count) [rad].
-
-    Raises FileNotFoundError, or InputError naming the line: a gap, a value that is no finite number, wrong columns.
-    """
-    if not path.is_file():
-        raise FileNotFoundError(f"no command file {path}")
-    try:
-        with path.open(newline="") as file:
-            reader = csv.reader(file)
-            lines = [(reader.line_num, row) for row in reader if row]
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{path} is not CSV: {error}") from error
-    wanted = ["time_s", *(f"drive_{i + 1}_rad" for i in range(count))]
-    if not lines or [name.strip() for name in lines[0][1]] != wanted:
-        found = ", ".join(lines[0][1]) if lines else "nothing"
-        raise InputError(f"{path}: the header must be {', '.join(wanted)}; found {found}")
-    values = []
-    for number, row in lines[1:]:
-        if len(row) != len(wanted):
-            raise InputError(f"{path}, line {number}: {len(row)} values where the header has {len(wanted)}")
-        for name, cell in zip(wanted, row, strict=True):
-            try:
-                good = math.isfinite(float(cell))
-            except ValueError:
-                good = False
-            if not good:
-                raise InputError(f"{path}, line {number}: {name} = {cell!r} is no finite number; fill the gap")
-        values.append([float(cell) for cell in row])
-    array = np.array(values)
-    if len(array) < 2:
-        raise InputError(f"{path}: {len(array)} rows of commands; give two or more")
-    steps = np.diff(array[:, 0])
-    if (steps <= 0).any():
-        line = lines[int(np.argmax(steps <= 0)) + 2][0]
-        raise InputError(f"{path}, line {line}: time_s must grow from row to row")
-    typical = float(np.median(steps))
-    odd = np.abs(steps - typical) > 0.01 * typical
-    if odd.any():
-        first = int(np.argmax(odd))
-        line = lines[first + 2][0]
-        raise InputError(
-            f"{path}, line {line}: a step of {steps[first]:g} s where the others are {typical:g} s; "
-            "give commands at even times, without a gap"
-        )
-    return array[:, 0], array[:, 1:]
 
 
 def _header(robot: TensegrityRobot) -> list[str]:

@@ -13,7 +13,7 @@ import pytest
 
 import tensegym
 from tensegym.cli.main import COMMANDS
-from tensegym.cli.simulate import read_commands
+from tensegym.control.commands_file import read_commands
 from tensegym.control.tipping import Pull, run_pull, subsets, tip_from, tip_table
 from tensegym.control.walker import Walker, load_table, save_table
 from tensegym.design.design import RobotDesign
@@ -224,6 +224,7 @@ def test_the_walker_holds_a_pull_to_its_end_and_pulls_deep_where_nothing_tips(ti
     with TensegrityRobot(dt=2e-3) as robot:
         robot.reset(0)
         walker = Walker(tips)
+        walker.begin(robot)
         first = walker.angles(robot, np.array([1.0, 0.0]))
         assert first.max() > 0
         robot.step(100)
@@ -231,7 +232,7 @@ def test_the_walker_holds_a_pull_to_its_end_and_pulls_deep_where_nothing_tips(ti
         robot.time += 2.0
         assert walker.angles(robot, np.array([1.0, 0.0])).max() == 0  # the release
         robot.reset(7)
-        walker.restart()
+        walker.begin(robot)
         assert walker.angles(robot, np.array([1.0, 0.0])).max() == pytest.approx(robot.command_limit[0])
 
 
@@ -359,16 +360,16 @@ def with_cell(row, column, value):
     ("rows", "header", "words"),
     [
         (with_cell(2, 3, ""), HEADER, ["line 4", "drive_3_rad = ''", "no finite number"]),
-        (with_cell(1, 1, "nan"), HEADER, ["line 3", "drive_1_rad = 'nan'", "no finite number"]),
-        (with_cell(1, 6, "inf"), HEADER, ["line 3", "drive_6_rad = 'inf'"]),
-        (with_cell(1, 0, "soon"), HEADER, ["line 3", "time_s = 'soon'"]),
-        ([r[:-1] if n == 2 else r for n, r in enumerate(ramp())], HEADER, ["line 4", "6 values", "7"]),
+        (with_cell(1, 1, "nan"), HEADER, ["line 3", "drive_1_rad: 'nan' is not a number"]),
+        (with_cell(1, 6, "inf"), HEADER, ["line 3", "drive_6_rad: 'inf'"]),
+        (with_cell(1, 0, "soon"), HEADER, ["line 3", "time_s: 'soon'"]),
+        ([r[:-1] if n == 2 else r for n, r in enumerate(ramp())], HEADER, ["line 4", "6 cells", "7"]),
         ([*ramp(), [0.7, *[0.0] * 6]], HEADER, ["line 6", "a step of 0.4 s where the others are 0.1 s", "gap"]),
         (with_cell(2, 0, 0.1), HEADER, ["line 4", "time_s must grow"]),
         ([[*r, 0.0] for r in ramp()], HEADER + ",drive_7_rad", ["the header must be time_s", "drive_7_rad"]),
         ([r[:-1] for r in ramp()], HEADER.removesuffix(",drive_6_rad"), ["the header must be time_s"]),
         (ramp(1), HEADER, ["1 rows", "two or more"]),
-        ([], HEADER, ["0 rows"]),
+        ([], HEADER, ["no rows below the header"]),
         (with_cell(3, 2, 500.0), HEADER, ["drive_2_rad = 500 at 0.3 s", "[0, 97.25] rad"]),
         (with_cell(3, 4, -1.0), HEADER, ["drive_4_rad = -1 at 0.3 s"]),
     ],
@@ -402,7 +403,7 @@ def test_a_bad_line_after_blank_ones_is_named_by_its_number_in_the_file(tmp_path
         (["--heading", "nan"], ["heading = nan"]),
         (["--design", "seven_rod"], ["unknown preset 'seven_rod'"]),
         (["--design", "none.toml"], ["no design file none.toml"]),
-        (["--commands", "none.csv"], ["no command file none.csv"]),
+        (["--commands", "none.csv"], ["no file none.csv"]),
     ],
 )
 def test_bad_arguments_of_simulate_write_nothing(arguments, words, cli, tmp_path):
@@ -414,11 +415,11 @@ def test_bad_arguments_of_simulate_write_nothing(arguments, words, cli, tmp_path
 
 def test_a_file_that_is_no_text_and_an_out_that_cannot_be_are_refused(cli, tmp_path):
     (tmp_path / "in.bin").write_bytes(os.urandom(64) + b"\xff\xfe\x80")
-    assert_refused(cli("simulate", "--commands", tmp_path / "in.bin", "--out", tmp_path / "out.csv"), "is not CSV")
+    assert_refused(cli("simulate", "--commands", tmp_path / "in.bin", "--out", tmp_path / "out.csv"), "not a CSV text file")
     good = commands_csv(tmp_path / "in.csv")
     assert_refused(cli("simulate", "--commands", good, "--out", tmp_path / "none" / "out.csv"), "no folder")
     assert_refused(cli("simulate", "--commands", good, "--out", tmp_path), "is a folder")
-    assert_refused(cli("simulate", "--commands", tmp_path, "--out", tmp_path / "out.csv"), "no command file")
+    assert_refused(cli("simulate", "--commands", tmp_path, "--out", tmp_path / "out.csv"), "no file")
     assert sorted(p.name for p in tmp_path.iterdir()) == ["in.bin", "in.csv"]
 
 

@@ -167,7 +167,7 @@ def _few_tips() -> list[bytes]:
 
 
 def _commands(path: Path) -> Any:
-    from tensegym.cli.simulate import read_commands
+    from tensegym.control.commands_file import read_commands
 
     return read_commands(path, 6)
 

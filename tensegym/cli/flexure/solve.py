@@ -15,12 +15,12 @@ from tensegym.cli.options import Within
 from tensegym.errors import InputError
 from tensegym.files import replace_file
 from tensegym.flexure.hinge import Hinge
-from tensegym.flexure.measured.csv_rows import number_of, read_rows
 from tensegym.flexure.models.joint import MODELS, Joint
 from tensegym.flexure.models.joint_file import load_joint
 from tensegym.flexure.models.joint_fit import fit_joint
 from tensegym.flexure.models.load_solver import Answer, solve_fem, solve_model
 from tensegym.report import Report, table
+from tensegym.tables import number_of, read_rows
 
 from .hinge_options import BoxOptions, HingeOptions, refuse_unused
 
@@ -98,7 +98,7 @@ def _told(joint: Joint) -> str:
 
 def read_loads(path: Path) -> FloatArray:
     """(n, 3) force x, y [N] and moment [N m]. Raises FileNotFoundError, or InputError naming column and row."""
-    header, rows = read_rows(path)
+    header, rows, _ = read_rows(path)
     for name in LOADS:
         if name not in header:
             raise InputError(f"{path}: no column {name}; the header must name {', '.join(LOADS)}, units included")

@@ -14,11 +14,11 @@ from tensegym.cli.options import Within
 from tensegym.errors import FlexureError, InputError
 from tensegym.files import replace_file
 from tensegym.flexure.measured.base_frame import BaseFrame, frame_at_rest
-from tensegym.flexure.measured.csv_rows import read_rows
 from tensegym.flexure.measured.measured_file import quantity
 from tensegym.flexure.measured.photo import draw_overlay, read_grey
 from tensegym.flexure.measured.sighting import Sighting, sight
 from tensegym.report import Report, table
+from tensegym.tables import read_rows
 
 _MM = 1e-3
 
@@ -106,7 +106,7 @@ def read_loads(path: Path, images: tuple[Path, ...]) -> tuple[list[str], list[li
 
     Raises InputError for a picture without loads, a name given twice, a missing column or unit.
     """
-    header, rows = read_rows(path)
+    header, rows, _ = read_rows(path)
     titles = [title.strip() for title in header]
     if "image" not in titles:
         raise InputError(f"{path}: no column image to tell which picture a load belongs to")

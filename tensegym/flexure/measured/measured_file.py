@@ -11,7 +11,7 @@ end A, x along the undeformed arm):
     torque (also Mz)     moment about the tip; the forces beside it, if any, then act at the tip (as `solve` counts)
 
 An empty cell was not measured. Columns that name none of these quantities (``image``, notes) are passed over. Columns
-may stand between semicolons or tabs, with decimal commas (csv_rows.py).
+may stand between semicolons or tabs, with decimal commas (tensegym/tables/rows.py).
 """
 
 from __future__ import annotations
@@ -25,8 +25,7 @@ import numpy as np
 from tensegym.arrays import FloatArray
 from tensegym.errors import InputError
 from tensegym.flexure.hinge import States
-
-from .csv_rows import number_of, read_rows
+from tensegym.tables import number_of, read_rows
 
 PAPER_LENGTH, ARM_LENGTH = 0.04, 0.12
 """The paper's hinges from base to tip, and its arm beyond the tip [m]"""
@@ -75,7 +74,7 @@ def read_measured(path: Path, arm_length: float = ARM_LENGTH) -> States:
         InputError: naming file, column and row: a unit missing or unknown, a column missing, given twice or half a
             pair, a cell that is no number, an angle not measured or past a quarter turn, loads that say nothing.
     """
-    header, rows = read_rows(path)
+    header, rows, _ = read_rows(path)
     columns: dict[str, FloatArray] = {}
     for k, title in enumerate(header):
         try:

@@ -186,7 +186,7 @@ def test_bad_hinges_are_refused(cli, tmp_path, loads):
     ("Fx_N,Fy_N,Mz_Nmm\n", ("no rows below the header",)),
     ("", ("empty",)),
     ("Fx_N,Fy_N,Mz_Nmm\n0,zero,0\n", ("row 1", "Fy_N: 'zero' is not a number")),
-    ("Fx_N,Fy_N,Mz_Nmm\n0,0,0\n0,1\n", ("row 2 has 2 cells, the header 3",)),
+    ("Fx_N,Fy_N,Mz_Nmm\n0,0,0\n0,1\n", ("line 3: 2 cells where the header has 3",)),
     ("Fx_N,Fy_N,Mz_Nmm\n0,nan,0\n", ("Fy_N: 'nan' is not a number",)),
     ("Fx_N,Fy_N,Mz_Nmm\n0,0,0\n0,,1\n", ("row 2 has no Fy_N",)),
 ])  # fmt: skip

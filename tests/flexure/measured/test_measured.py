@@ -96,7 +96,7 @@ def test_torque_alone_is_a_pure_moment_and_empty_cells_are_not_measured(tmp_path
     ("angle_deg,x_mm,y_mm,force_N\n1,2,3,4\n1,two,3,4\n", ("row 2", "x_mm", "'two'")),
     ("angle_deg,x_mm,y_mm,force_N\n1,2,3,inf\n", ("row 1", "force_N", "'inf'")),
     ("angle_deg,x_mm,y_mm,force_N\n1,2,3,4\n,2,3,4\n", ("row 2 has no angle",)),
-    ("angle_deg,x_mm,y_mm,force_N\n1,2,3\n", ("row 1 has 3 cells",)),
+    ("angle_deg,x_mm,y_mm,force_N\n1,2,3\n", ("line 2: 3 cells",)),
     ("angle_deg,x_mm,y_mm,force_N\n", ("no rows",)),
     ("", ("empty",)),
 ], ids=lambda value: value[-1] if isinstance(value, tuple) else "")  # fmt: skip

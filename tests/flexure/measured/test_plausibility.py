@@ -117,7 +117,7 @@ def test_what_a_hinge_does_passes(name):
 @pytest.mark.parametrize(("text", "words"), [
     ("angle_deg;torque_Nmm\n1,5;1.234,5\n2;3\n", ("row 1, torque_Nmm", "'1.234,5' is not a number")),
     ("angle_rad,torque_Nmm\n0.1,1\n25,3\n", ("row 2", "1432 deg", "degrees under a header in rad")),
-    ("angle_deg,torque_Nmm\n1,5,1,234\n", ("row 1 has 4 cells",)),
+    ("angle_deg,torque_Nmm\n1,5,1,234\n", ("line 2: 4 cells",)),
     ("angle_deg,torque_Nmm\n1_0,5\n2,5\n", ("'1_0' is not a number",)),
     ("angle_deg,torque_Nmm\n1,5\0\n2,5\n", ()),
 ])  # fmt: skip

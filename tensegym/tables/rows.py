@@ -7,6 +7,7 @@ import io
 import math
 import re
 from pathlib import Path
+from typing import NamedTuple
 
 from tensegym.errors import InputError
 
@@ -14,7 +15,17 @@ LARGEST = 20_000_000  # bytes
 _COMMA = re.compile(r"[+-]?\d*,\d+(e[+-]?\d+)?", re.IGNORECASE)
 
 
-def read_rows(path: Path) -> tuple[list[str], list[list[str]]]:
+class Rows(NamedTuple):
+    """A CSV's header and cells."""
+
+    header: list[str]
+    cells: list[list[str]]
+    """A list a row, as many as the header has."""
+    lines: list[int]
+    """Where in the file each row ends, from 1."""
+
+
+def read_rows(path: Path) -> Rows:
     """Header and rows of a CSV, blank lines and empty columns at the end left out.
 
     Columns stand between semicolons or tabs where the header has one, else between commas; with semicolons or tabs a
@@ -36,8 +47,9 @@ def read_rows(path: Path) -> tuple[list[str], list[list[str]]]:
         first = next((line for line in text.splitlines() if line.strip()), "")
         between = ";" if ";" in first else "\t" if "\t" in first else ","
         cells = csv.reader(io.StringIO(text, newline=""), delimiter=between)
-        lines = [[cell.strip() for cell in line] for line in cells]
-        lines = [line for line in lines if any(line)]
+        numbered = [([cell.strip() for cell in line], cells.line_num) for line in cells]
+        lines = [line for line, _ in numbered if any(line)]
+        numbers = [number for line, number in numbered if any(line)]
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: not a CSV text file") from error
     if len(lines) < 2:
@@ -46,13 +58,13 @@ def read_rows(path: Path) -> tuple[list[str], list[list[str]]]:
     while header and not header[-1] and all(len(row) < len(header) or not row[len(header) - 1] for row in rows):
         header.pop()
     out = []
-    for number, row in enumerate(rows, 1):
+    for number, row in zip(numbers[1:], rows, strict=True):
         while len(row) > len(header) and not row[-1]:
             row.pop()
         if len(row) != len(header):
-            raise InputError(f"{path}: row {number} has {len(row)} cells, the header {len(header)}")
+            raise InputError(f"{path}, line {number}: {len(row)} cells where the header has {len(header)}")
         out.append([cell.replace(",", ".") if between != "," and _COMMA.fullmatch(cell) else cell for cell in row])
-    return header, out
+    return Rows(header, out, numbers[1:])
 
 
 def number_of(cell: str, where: str) -> float:
