@@ -415,7 +415,7 @@ def test_bad_arguments_of_simulate_write_nothing(arguments, words, cli, tmp_path
 
 def test_a_file_that_is_no_text_and_an_out_that_cannot_be_are_refused(cli, tmp_path):
     (tmp_path / "in.bin").write_bytes(os.urandom(64) + b"\xff\xfe\x80")
-    assert_refused(cli("simulate", "--commands", tmp_path / "in.bin", "--out", tmp_path / "out.csv"), "not a CSV text file")
+    assert_refused(cli("simulate", "--commands", tmp_path / "in.bin", "--out", tmp_path / "out.csv"), "not a CSV")
     good = commands_csv(tmp_path / "in.csv")
     assert_refused(cli("simulate", "--commands", good, "--out", tmp_path / "none" / "out.csv"), "no folder")
     assert_refused(cli("simulate", "--commands", good, "--out", tmp_path), "is a folder")
