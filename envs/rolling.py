@@ -11,7 +11,6 @@ from gymnasium.utils import EzPickle
 from numpy.typing import NDArray
 
 from tensegym.arrays import FloatArray
-from tensegym.control.controller import angles_of
 from tensegym.control.observation import Observation, make_observation
 from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import as_design
@@ -172,7 +171,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         SimulationError before the first reset; the environment is as it was then."""
         command = self._checked(action)
         episode = self._running()
-        terms = episode.advance(angles_of(command, self.robot), self.substeps)
+        terms = episode.advance(self.robot.angles_of(command), self.substeps)
         info: dict[str, Any] = {"reward_terms": terms, "gait": episode.gait.as_dict()}
         if episode.ended:
             info["termination"] = episode.ended

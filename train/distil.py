@@ -14,7 +14,6 @@ import numpy as np
 import tyro
 
 from tensegym.arrays import FloatArray, IntArray
-from tensegym.control.controller import angles_of
 from tensegym.control.cpg import Cpg, CpgController, cable_ends_in_heading, drive_kinds, feedback_text, pose_terms
 from tensegym.control.policy import PolicyController
 from tensegym.robot.robot import TensegrityRobot
@@ -69,7 +68,7 @@ class _Examples:
         action = self.policy.action(robot, direction).astype(float)
         self.terms.append(pose_terms(cable_ends_in_heading(robot, direction)))
         self.commands.append(action / 2)
-        return self.generator.angles(robot, direction) if self.generator else angles_of(action, robot)
+        return self.generator.angles(robot, direction) if self.generator else robot.angles_of(action)
 
 
 def fit(terms: FloatArray, commands: FloatArray, kinds: IntArray) -> FloatArray:

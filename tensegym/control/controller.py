@@ -33,8 +33,3 @@ class Controller(Protocol):
             robot: as it is now.
             direction: (2,) wanted heading now, a unit vector in the world's horizontal plane.
         """
-
-
-def angles_of(action: FloatArray, robot: TensegrityRobot) -> FloatArray:
-    """Spool angles (w,) [rad] of an action (w,): -1 lets a cable out to its rest length, 1 is the deepest pull."""
-    return (action + 1) / 2 * robot.command_limit

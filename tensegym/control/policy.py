@@ -17,7 +17,6 @@ from tensegym.design.variation import parse_variation
 from tensegym.errors import DesignError
 from tensegym.robot.robot import TensegrityRobot
 
-from .controller import angles_of
 from .observation import make_observation
 
 FILES = ("model.zip", "vecnormalize.pkl", "config.yaml")
@@ -126,4 +125,4 @@ class PolicyController:
 
     def angles(self, robot: TensegrityRobot, direction: FloatArray) -> FloatArray:
         """As `Controller` has it."""
-        return angles_of(self.action(robot, direction).astype(float), robot)
+        return robot.angles_of(self.action(robot, direction).astype(float))

@@ -7,8 +7,6 @@ import numpy as np
 from tensegym.arrays import FloatArray
 from tensegym.robot.robot import TensegrityRobot
 
-from .controller import angles_of
-
 
 class RandomCommands:
     """Every drive anywhere in its range, drawn anew each period."""
@@ -22,4 +20,4 @@ class RandomCommands:
 
     def angles(self, robot: TensegrityRobot, direction: FloatArray) -> FloatArray:
         """As `Controller` has it."""
-        return angles_of(self._rng.uniform(-1, 1, len(robot.drives)), robot)
+        return robot.angles_of(self._rng.uniform(-1, 1, len(robot.drives)))

@@ -122,6 +122,10 @@ class TensegrityRobot(RobotState):
         """Set the commanded spool angles (w,) [rad]; 0 leaves a stiff cable just slack at rest, more winds it in."""
         self.drives[:, COMMAND] = angles
 
+    def angles_of(self, action: FloatArray) -> FloatArray:
+        """Spool angles (w,) [rad] of an action (w,): -1 lets a cable out to its rest length, 1 is the deepest pull."""
+        return (action + 1) / 2 * self.command_limit
+
     def step(self, substeps: int = 1) -> None:
         """Advance by ``substeps`` time steps. Raises SimulationError when the simulation has diverged."""
         with self.world.stepping():

@@ -14,7 +14,7 @@ from .episode import Episode, Watcher
 from .goal import Goal, Heading
 from .motions import MOTIONS, as_task
 from .policy_trials import evaluate, policy_setup
-from .reward import RewardWeights, reward_terms
+from .reward import RewardWeights
 from .roll import Roll
 from .rollout import Result, rollout
 from .start import Start
@@ -24,5 +24,5 @@ from .trials import Setup, run_trials, summarise
 
 __all__ = [
     "MOTIONS", "Bound", "Episode", "Goal", "Heading", "Result", "RewardWeights", "Roll", "Setup", "Start", "StepOnto",
-    "Task", "Watcher", "as_task", "evaluate", "policy_setup", "reward_terms", "rollout", "run_trials", "summarise",
+    "Task", "Watcher", "as_task", "evaluate", "policy_setup", "rollout", "run_trials", "summarise",
 ]  # fmt: skip

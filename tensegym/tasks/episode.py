@@ -48,7 +48,7 @@ class Episode:
     ) -> None:
         faces = len(robot.faces.triangles)
         check_options(options or {}, faces)
-        self.robot, self.task = robot, task
+        self.robot, self.task, self._length = robot, task, robot.design.length
         self.start: Start = draw_start(faces, rng, options or {})
         self.ended: str | None = None
         """Why the episode is over; None while it goes on."""
@@ -96,7 +96,7 @@ class Episode:
         return self._rewards()
 
     def _rewards(self) -> dict[str, float]:
-        totals, before, length = self.robot.totals(), self._totals, self.robot.design.length
+        totals, before, length = self.robot.totals(), self._totals, self._length
         along = float(self.direction @ self.reading.centre[:2])
         progress, self._along, self._totals = along - self._along, along, totals
         return self.task.rewards(
@@ -112,8 +112,7 @@ class Episode:
                 watcher(self)
 
     def _check_whole(self, reading: Reading) -> None:
-        reach = NODE_REACH * self.robot.design.length
-        if not farthest_node(reading) <= reach:
+        if not farthest_node(reading) <= NODE_REACH * self._length:
             raise SimulationError(f"a node left its bound, {NODE_REACH:g} rod lengths from the centre of mass")
         if not np.linalg.norm(reading.node_velocities, axis=1).max() <= SPEED_BOUND:
             raise SimulationError(f"a node is faster than {SPEED_BOUND:g} m/s")

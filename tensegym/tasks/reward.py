@@ -21,12 +21,3 @@ class RewardWeights(Checked, error=DesignError):
     def changed(self, weights: Mapping[str, Any]) -> RewardWeights:
         """A copy with some weights replaced. Raises DesignError naming one that there is not, or its range."""
         return fill(RewardWeights, weights, "reward", DesignError, self)
-
-
-def reward_terms(weights: RewardWeights, progress: float, slip: float, energy: float) -> dict[str, float]:
-    """Signed terms of one step from progress and slip [rod lengths] and energy [J]; the reward is their sum."""
-    return {
-        "progress": weights.progress * progress,
-        "slip": -weights.slip * slip,
-        "energy": -weights.energy * energy,
-    }

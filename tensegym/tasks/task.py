@@ -19,7 +19,7 @@ from tensegym.tables import Checked, bounded, noted, parsed
 from .bound import Bound
 from .goal import Goal, Heading
 from .progress import Progress
-from .reward import RewardWeights, reward_terms
+from .reward import RewardWeights
 from .start import Start
 
 Own = TypeVar("Own", bound="Task")
@@ -107,7 +107,8 @@ class Task(Checked, error=DesignError):
             slip: path of the grounded feet's centres, mean over the feet [rod lengths].
             energy: drawn by the drives [J].
         """
-        return reward_terms(self.reward, progress, slip, energy)
+        w = self.reward
+        return {"progress": w.progress * progress, "slip": -w.slip * slip, "energy": -w.energy * energy}
 
     def measures(self, episode: Progress) -> dict[str, float]:
         """The metrics named in MEASURES, of an episode that has ended."""
