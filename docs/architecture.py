@@ -1,21 +1,19 @@
 """Draws architecture.png: the shelves with the imports between them, four walks over them, and one action as data.
 
-Run from the repository: python docs/architecture.py. The arrows are the imports as the sources have them.
+Run in the repository's root: python -m docs.architecture. The arrows are the imports as the sources have them.
 """
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Any
-
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
 
 from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
 from tensegym.plotting import new_figure, save
 from tests.test_layers import OWN, SHELVES, shelf
+
+HERE = Path(__file__).parent
 
 PLACES = {  # of each shelf: column, row from below, what stands there
     "structure": (0.0, 1.0, "a tensegrity at rest"),

@@ -14,8 +14,8 @@ import numpy as np
 
 from tensegym.arrays import FloatArray
 from tensegym.errors import TensegymError
+from tensegym.errors import one_line as one_line
 
-LONGEST_MESSAGE = 300  # characters
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = 60
 _SHORT.maxlong, _SHORT.maxlist, _SHORT.maxtuple, _SHORT.maxdict, _SHORT.maxlevel = 40, 4, 4, 3, 3
@@ -30,12 +30,6 @@ def show(value: Any) -> str:
     except ValueError:  # an integer of more digits than Python writes
         return "a number of thousands of digits"
     return text if len(text) <= 120 else text[:117] + "..."
-
-
-def one_line(text: str) -> str:
-    """A message as one line of at most 300 characters."""
-    text = " ".join(text.split())
-    return text if len(text) <= LONGEST_MESSAGE else text[: LONGEST_MESSAGE - 3] + "..."
 
 
 @contextmanager
