@@ -26,7 +26,7 @@ from tqdm import tqdm
 
 from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import as_design, design_to_dict
-from tensegym.design.variation import variation
+from tensegym.design.variation import parse_variation
 from tensegym.processes import Pool
 from tensegym.report import table
 from tensegym.search.confirm import FIRST_SEED, TIME_STEP
@@ -108,7 +108,7 @@ def drawn(config: str, count: int, seed: int = 0) -> list[RobotDesign]:
     env = load_config(config).env
     base = as_design(env["design"])
     rng = np.random.default_rng(seed)
-    return [variation(env["vary"], base).draw(base, rng) for _ in range(count)]
+    return [parse_variation(env["vary"], base).draw(base, rng) for _ in range(count)]
 
 
 def for_design(task: str, design: RobotDesign) -> Problem:
