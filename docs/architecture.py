@@ -20,7 +20,7 @@ PLACES = {  # of each shelf: column, row from below, what stands there
     "flexure": (1.2, 1.0, "hinges, FEM, joint models"),
     "bullet": (2.4, 1.0, "the engine"),
     "design": (0.5, 2.0, "a robot as data"),
-    "flexible": (3.1, 2.2, "flexures in any URDF"),
+    "flexible": (3.1, 3.8, "flexures in any URDF"),
     "physics": (0.5, 3.0, "the compiled substep"),
     "robot": (1.2, 4.0, "a design in the engine"),
     "control": (0.6, 5.0, "what moves a robot"),
