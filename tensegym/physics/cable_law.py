@@ -19,7 +19,7 @@ import numpy as np
 
 from tensegym.compiled import kernel
 
-from .mobility import mobility_matrix
+from .mobility import mobility_matrix, whole_blocks
 from .model import DAMPING, STIFFNESS, TWO_WAY
 from .vectors import KERNEL
 
@@ -40,46 +40,58 @@ def explicit_tensions(springs, lengths, rates, natural, tensions):
 
 @kernel(**KERNEL)
 def implicit_tensions(model, out, lengths, rates, natural, dt, tensions):
-    """Write the tensions (s,) at the end of the step, from the geometry in ``out``; they start from the last step's."""
-    springs, mobility, count = model.spring_params, out.mobility, len(lengths)
-    mobility_matrix(model, out)
-    weight, target, residual = out.solve
-    for c in range(count):
+    """Write the tensions (s,) at the end of the step, from the geometry in ``out``; they start from the last step's.
+
+    Slack rows stay out of it. Of the others, in their order, out.solve holds the weights, the residuals (target - A T,
+    kept up to date: a whole row a change, which vectorises), the pivots and the tensions.
+    """
+    springs, rows, mobility = model.spring_params, out.rows, out.mobility
+    weight, residual, pivot, tension = out.solve[0], out.solve[1], out.solve[2], out.solve[3]
+    cables, count = len(lengths) - len(model.pin_bodies), 0
+    for c in range(len(lengths)):
         k, damping = springs[c, STIFFNESS], springs[c, DAMPING]
-        weight[c] = 1 / (dt * damping + dt * dt * k)
         stretch = lengths[c] + dt * rates[c] - natural[c]
-        target[c] = weight[c] * (k * stretch + damping * rates[c])
         if springs[c, TWO_WAY] == 0 and stretch <= 0:
-            target[c] = 0.0  # stays slack
-            weight[c] = np.inf
             tensions[c] = 0.0
-    for c in range(count - len(model.pin_bodies), count):
+            continue
+        rows[count], tension[count] = c, tensions[c]
+        weight[count] = 1 / (dt * damping + dt * dt * k)
+        residual[count] = weight[count] * (k * stretch + damping * rates[c])
+        count += 1
+    mobility_matrix(model, out, count)
+    width = whole_blocks(count)
+    for r in range(count, width):
+        residual[r] = 0.0
+    for r in range(count):
+        c = rows[r]
         k, damping = springs[c, STIFFNESS], springs[c, DAMPING]
-        if dt * mobility[c, c] * max(dt * k, damping) < _SLOW:
-            weight[c] = np.inf
-            tensions[c] = k * (lengths[c] - natural[c]) + damping * rates[c]
-    residual[:] = target  # target - A T, kept up to date: a whole row a change, which vectorises
-    for c in range(count):
-        if tensions[c] != 0:
-            for d in range(count):
-                residual[d] -= mobility[c, d] * tensions[c]
+        if c >= cables and dt * mobility[r, r] * max(dt * k, damping) < _SLOW:
+            weight[r] = np.inf
+            tension[r] = k * (lengths[c] - natural[c]) + damping * rates[c]
+        pivot[r] = mobility[r, r] + weight[r]
+    for r in range(count):
+        if tension[r] != 0:
+            for d in range(width):
+                residual[d] -= mobility[r, d] * tension[r]
     for _ in range(_MAX_SWEEPS):
         change, scale = 0.0, 1e-9
-        for c in range(count):
-            if weight[c] == np.inf:
+        for r in range(count):
+            if weight[r] == np.inf:
                 continue
-            new = tensions[c] + (residual[c] - weight[c] * tensions[c]) / (mobility[c, c] + weight[c])
-            if springs[c, TWO_WAY] == 0 and new < 0:
+            new = tension[r] + (residual[r] - weight[r] * tension[r]) / pivot[r]
+            if new < 0 and springs[rows[r], TWO_WAY] == 0:
                 new = 0.0
-            step = new - tensions[c]
+            step = new - tension[r]
             if step != 0:
-                for d in range(count):
-                    residual[d] -= mobility[c, d] * step
-                tensions[c] = new
+                for d in range(width):
+                    residual[d] -= mobility[r, d] * step
+                tension[r] = new
             change = max(change, abs(step))
             scale = max(scale, abs(new))
         if change <= _TOLERANCE * scale:
             break
+    for r in range(count):
+        tensions[rows[r]] = tension[r]
 
 
 @kernel(**KERNEL)

@@ -6,7 +6,7 @@ import numpy as np
 
 from tensegym.compiled import kernel
 
-from .vectors import KERNEL, cross, rotate, rotation_matrix
+from .vectors import ALLOCATING, KERNEL, cross, rotate, rotation_matrix
 
 
 @kernel(**KERNEL)
@@ -26,7 +26,7 @@ def points_in_world(poses, rotations, bodies, points, out):
             out[p, i] = poses[b, i] + (rotations[b, i, 0] * x + rotations[b, i, 1] * y + rotations[b, i, 2] * z)
 
 
-@kernel(**KERNEL)
+@kernel(**ALLOCATING)
 def points_at(poses, bodies, points):
     """The same from poses (b, 7) alone, in an array of its own (k, 3)."""
     rotations, out = np.empty((len(poses), 3, 3)), np.empty((len(bodies), 3))

@@ -17,7 +17,7 @@ from tensegym.arrays import FloatArray, IntArray
 
 from .drives import STATE_SIZE
 
-# What kernels take from here makes this file one of their sources: it is counted by tensegym.compiled.
+# Kernels take these numbers, so this file is counted among their sources (tensegym.compiled)
 # Columns of a spring's parameters
 END_A, END_B, STIFFNESS, DAMPING, TWO_WAY = slice(0, 3), slice(3, 6), 6, 7, 8
 # Columns of a body's parameters; every body is symmetric about its z axis
@@ -26,6 +26,7 @@ INVERSE_MASS, INVERSE_TRANSVERSE, INVERSE_AXIAL, SPIN_DAMPING = range(4)
 PIN_IN_FIRST, PIN_IN_SECOND, PIN_AXIS = slice(0, 3), slice(3, 6), slice(6, 9)
 # Entries of the totals
 DRIVE_WORK, ELECTRICAL_ENERGY, CENTRE_PATH, FOOT_PATH, FOOT_PATH_SUM = range(5)
+BLOCK = 8  # columns that a processor takes together; whole blocks leave no remainder to take one by one
 # Rows of a pin's geometry
 FIRST_TO_PIN, SECOND_TO_PIN, AXIS_IN_WORLD, FIRST_Z, SECOND_Z, SECOND_PER_RATE = range(6)
 
@@ -125,12 +126,15 @@ class Out(NamedTuple):
     """(p, 7, 7) its inverse."""
     pin_work: FloatArray
     """(2, 7, 7) workspace of the inversion."""
+    rows: IntArray
+    """(s,) spring rows of an implicit solve, the slack ones left out; of what follows a column for each, padded to
+    whole blocks."""
     response: FloatArray
-    """(b, 6, s) accelerations of the bodies by a unit tension in each spring row."""
+    """(b, 6, k) accelerations of the bodies by a unit tension in each of them."""
     mobility: FloatArray
-    """(s, s) rates of all lengths by them, J M^-1 J^T [1/kg], see mobility.py."""
+    """(s, k) rates of their lengths by them, J M^-1 J^T [1/kg], see mobility.py."""
     solve: FloatArray
-    """(3, s) workspace of the implicit solve: weights, targets, residuals."""
+    """(4, k) workspace of the implicit solve, see cable_law.py."""
     last_tensions: FloatArray
     """(w,) of the stiff cables, a substep ago [N]."""
     new_positions: FloatArray
@@ -158,6 +162,7 @@ def new_state(model: Model, poses: FloatArray, angles: FloatArray) -> State:
 def new_out(model: Model) -> Out:
     """Room for a substep's results."""
     bodies, springs, pins = len(model.masses), len(model.spring_bodies), len(model.pin_bodies)
+    padded = BLOCK * -(-springs // BLOCK)
     return Out(
         wrenches=np.zeros((bodies, 6)),
         rotations=np.zeros((bodies, 3, 3)),
@@ -167,9 +172,10 @@ def new_out(model: Model) -> Out:
         pin_mass=np.zeros((pins, 7, 7)),
         pin_inverse=np.zeros((pins, 7, 7)),
         pin_work=np.zeros((2, 7, 7)),
-        response=np.zeros((bodies, 6, springs)),
-        mobility=np.zeros((springs, springs)),
-        solve=np.zeros((3, springs)),
+        rows=np.zeros(springs, dtype=np.int64),
+        response=np.zeros((bodies, 6, padded)),
+        mobility=np.zeros((springs, padded)),
+        solve=np.zeros((4, padded)),
         last_tensions=np.zeros(model.driven_count),
         new_positions=np.zeros((len(model.node_bodies), 3)),
     )

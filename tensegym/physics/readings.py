@@ -15,7 +15,7 @@ from tensegym.compiled import kernel
 
 from .geometry import points_at, rotations_of, span
 from .model import STIFFNESS, TWO_WAY
-from .vectors import KERNEL, angular_velocity
+from .vectors import ALLOCATING, angular_velocity
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Totals:
     foot_path_sum: float
 
 
-@kernel(**KERNEL)
+@kernel(**ALLOCATING)
 def velocities_between(last_poses, poses, dt):
     """(b, 6) linear and angular velocities that took ``last_poses`` (b, 7) to ``poses`` in dt [s]."""
     out = np.empty((len(poses), 6))
@@ -56,7 +56,7 @@ def velocities_between(last_poses, poses, dt):
     return out
 
 
-@kernel(**KERNEL)
+@kernel(**ALLOCATING)
 def nodes_in_world(poses, velocities, bodies, points):
     """Positions (n, 3) [m] and velocities (n, 3) [m/s] of the nodes at ``points`` (n, 3) [m] in ``bodies`` (n,)."""
     positions, speeds = points_at(poses, bodies, points), np.empty((len(bodies), 3))
@@ -92,7 +92,7 @@ def momentum(
     return linear.sum(axis=0), (np.cross(poses[:, :3], linear) + spin).sum(axis=0)
 
 
-@kernel(**KERNEL)
+@kernel(**ALLOCATING)
 def mechanical_energy(poses, velocities, masses, inertias, gravity, ends, params, natural):
     """Kinetic, gravity (zero at z = 0) and the cables' elastic energy [J].
 

@@ -154,5 +154,7 @@ def mobility_at_rest(model: Model) -> FloatArray:
     out = new_out(model)
     spring_geometry(model, model.rest_poses, np.zeros(len(model.pin_bodies)), out, np.empty(len(model.spring_bodies)))
     split_rod_inertia(model, model.rest_poses, out)
-    mobility_matrix(model, out)
-    return out.mobility
+    count = len(model.spring_bodies)
+    out.rows[:] = np.arange(count)
+    mobility_matrix(model, out, count)
+    return out.mobility[:, :count]

@@ -20,7 +20,7 @@ from tensegym.compiled import kernel
 
 from .model import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE
 from .split_rods import add_generalised, inertia_times
-from .vectors import KERNEL, angular_velocity, cross, dot, turn
+from .vectors import ALLOCATING, KERNEL, angular_velocity, cross, dot, turn
 
 _MOST_ITERATIONS, _TOLERANCE = 20, 1e-12  # changes of a velocity over (1 + the fastest); each is 1e-2 of the last
 
@@ -49,7 +49,7 @@ def _composed(w, axis, rate, dt):
     return factor * vx, factor * vy, factor * vz
 
 
-@kernel(**KERNEL)
+@kernel(**ALLOCATING)
 def step_split_rods(model, state, dt, out):
     """Replace the wrenches on the halves of split rods by those that make the engine take a leapfrog step under them:
     force and moment on the first half, a moment along the pin on the second."""

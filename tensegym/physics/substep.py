@@ -46,7 +46,10 @@ def substep(model, ground, state, out, dt, implicit):
     step_split_rods(model, state, dt, out)
     _wind(model, state, out, dt)
     _add_paths(model, ground, state, out)
-    state.last_poses[:] = state.poses
+    poses, last_poses = state.poses, state.last_poses
+    for b in range(len(poses)):
+        for i in range(7):
+            last_poses[b, i] = poses[b, i]
 
 
 @kernel(**KERNEL)

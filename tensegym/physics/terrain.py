@@ -13,7 +13,7 @@ from tensegym.compiled import kernel
 from tensegym.errors import DesignError
 from tensegym.tables import Checked, bounded
 
-from .vectors import KERNEL
+from .vectors import ALLOCATING, KERNEL
 
 CELLS_PER_LENGTH = 4  # grid cells a correlation length
 MOST_CELLS = 1000  # from the middle to an edge; the engine then holds four million heights
@@ -107,7 +107,7 @@ def distance_to_ground(point, ground):
     return (point[2] - (corner + du * u + dv * v)) / np.sqrt(1 + (du * du + dv * dv) / (cell * cell))
 
 
-@kernel(**KERNEL)
+@kernel(**ALLOCATING)
 def distances_to_ground(points, ground):
     """Those of points (k, 3): (k,) [m]."""
     out = np.empty(len(points))

@@ -8,10 +8,10 @@ from __future__ import annotations
 from tensegym.bullet.c_interface import client_handle, push_and_step, read_states
 from tensegym.compiled import kernel
 from tensegym.physics.substep import substep
-from tensegym.physics.vectors import KERNEL
+from tensegym.physics.vectors import ALLOCATING
 
 
-@kernel(**KERNEL)
+@kernel(**ALLOCATING)
 def run(count, engine, model, ground, state, out, dt, implicit):
     """Take ``count`` time steps of a DIRECT client; returns how many were taken.
 
