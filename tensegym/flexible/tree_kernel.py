@@ -13,15 +13,28 @@ import numpy as np
 
 from tensegym.compiled import kernel
 from tensegym.flexure.fem.beam import OPTIONS
-from tensegym.physics.vectors import cross, dot, rotation_matrix
 
 FIXED, REVOLUTE, PRISMATIC = range(3)
+
+
+# Not physics' own: a kernel compiled for this tree's rows first was seen to change the last bits of a robot's substep.
+@kernel(**OPTIONS)
+def cross(a, b, out):
+    """out = a x b."""
+    out[0] = a[1] * b[2] - a[2] * b[1]
+    out[1] = a[2] * b[0] - a[0] * b[2]
+    out[2] = a[0] * b[1] - a[1] * b[0]
+
+
+@kernel(**OPTIONS)
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @kernel(**OPTIONS)
 def _times(matrix, vector, out):
     for i in range(3):
-        out[i] = dot(matrix[i], vector)
+        out[i] = _dot(matrix[i], vector)
 
 
 @kernel(**OPTIONS)
@@ -40,8 +53,10 @@ def frames(tree, base, q, turns, origins, centres, axes):
 
     base (7,) position and quaternion of the base's principal frame; q (j,) joint positions.
     """
-    own = np.empty((3, 3))
-    rotation_matrix(base[3:], own)
+    x, y, z, w = base[3], base[4], base[5], base[6]
+    own = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                    [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                    [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])  # fmt: skip
     shift, local, spun = np.empty(3), np.empty((3, 3)), np.empty((3, 3))
     for i in range(len(tree.parent)):
         up = tree.parent[i]
@@ -80,7 +95,7 @@ def _columns(tree, link, point, origins, centres, axes, where, linear, angular):
         if tree.kind[i] == REVOLUTE:
             for k in range(3):
                 arm[k] = point[k] - origins[i, k]
-            linear[count][:] = cross(axes[i], arm)
+            cross(axes[i], arm, linear[count])
             angular[count] = axes[i]
         if tree.kind[i] != FIXED:
             where[count] = tree.first + tree.joint[i]
@@ -97,7 +112,7 @@ def _columns(tree, link, point, origins, centres, axes, where, linear, angular):
         for k in range(3):
             linear[count], angular[count] = 0.0, 0.0
             angular[count, k] = 1.0
-            linear[count][:] = cross(angular[count], arm)
+            cross(angular[count], arm, linear[count])
             where[count] = 3 + k
             count += 1
     return count
@@ -109,7 +124,7 @@ def generalised(tree, link, point, force, torque, origins, centres, axes, out):
     size = len(tree.parent) + 6
     where, linear, angular = np.empty(size, np.int64), np.empty((size, 3)), np.empty((size, 3))
     for c in range(_columns(tree, link, point, origins, centres, axes, where, linear, angular)):
-        out[where[c]] += dot(linear[c], force) + dot(angular[c], torque)
+        out[where[c]] += _dot(linear[c], force) + _dot(angular[c], torque)
 
 
 @kernel(**OPTIONS)
@@ -138,7 +153,7 @@ def mass_matrix(tree, turns, origins, centres, axes, out):
         for c in range(count):
             _times(inertia, angular[c], spin)
             for d in range(count):
-                out[where[c], where[d]] += tree.mass[i] * dot(linear[c], linear[d]) + dot(spin, angular[d])
+                out[where[c], where[d]] += tree.mass[i] * _dot(linear[c], linear[d]) + _dot(spin, angular[d])
 
 
 @kernel(**OPTIONS)
@@ -155,15 +170,15 @@ def bias(tree, v, gravity, turns, origins, centres, axes, out):
             if tree.first:
                 spins[i] = v[3:6]
                 d[:] = origins[i] - centres[i]  # the base's centre is what has no acceleration
-                e[:] = cross(spins[i], d)
-                pulls[i][:] = cross(spins[i], e)
+                cross(spins[i], d, e)
+                cross(spins[i], e, pulls[i])
         else:
             d[:] = origins[i] - origins[up]
             spins[i], turnings[i] = spins[up], turnings[up]
-            e[:] = cross(spins[up], d)
-            pulls[i][:] = cross(spins[up], e)
-            e[:] = cross(turnings[up], d)
-            f[:] = cross(spins[up], axes[i])
+            cross(spins[up], d, e)
+            cross(spins[up], e, pulls[i])
+            cross(turnings[up], d, e)
+            cross(spins[up], axes[i], f)
             for k in range(3):
                 pulls[i, k] += pulls[up, k] + e[k]
                 if tree.kind[i] == PRISMATIC:
@@ -174,12 +189,12 @@ def bias(tree, v, gravity, turns, origins, centres, axes, out):
         if tree.mass[i] == 0.0:
             continue
         d[:] = centres[i] - origins[i]
-        e[:] = cross(spins[i], d)
-        f[:] = cross(spins[i], e)
-        e[:] = cross(turnings[i], d)
+        cross(spins[i], d, e)
+        cross(spins[i], e, f)
+        cross(turnings[i], d, e)
         force = tree.mass[i] * (pulls[i] + e + f - gravity)
         inertia = turns[i] @ tree.inertia[i] @ turns[i].T
         _times(inertia, spins[i], e)
-        f[:] = cross(spins[i], e)
+        cross(spins[i], e, f)
         _times(inertia, turnings[i], moment)
         generalised(tree, i, centres[i], force, moment + f, origins, centres, axes, out)
