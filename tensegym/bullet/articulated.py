@@ -65,6 +65,8 @@ class Articulated:
 
     def read_joints(self, positions: FloatArray, rates: FloatArray) -> None:
         """Write every moving joint's position and rate."""
+        if not self.moving:  # the engine answers None
+            return
         states = pybullet.getJointStates(self.body, self.moving, self.client)
         positions[:] = [state[0] for state in states]
         rates[:] = [state[1] for state in states]

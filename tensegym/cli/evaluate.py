@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,8 +9,8 @@ from typing import Annotated, Any
 
 from tensegym.control.table import make_controller
 from tensegym.errors import InputError
-from tensegym.files import replace_file
-from tensegym.report import Report, table
+from tensegym.files import write_text
+from tensegym.report import Report, table, to_json
 from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP
 from tensegym.tasks.figures import GaitRecorder, draw_gait, write_video
 from tensegym.tasks.policy_trials import EPISODE_SECONDS, FIRST_SEED, baseline_setups, policy_setup
@@ -64,8 +63,7 @@ class Evaluate:
         summaries = {name: summarise(each) for name, each in results.items()}
         data = {"policy": self.policy, "dt": dt, "seconds": self.seconds, "summaries": summaries,
                 "episodes": {name: [result.row() for result in each] for name, each in results.items()}}  # fmt: skip
-        with replace_file(self.out / "metrics.json") as file:
-            json.dump(data, file, indent=1, allow_nan=False)
+        write_text(self.out / "metrics.json", to_json(data, indent=1) + "\n")
         self._draw(setup, [result.gait.speed_lps for result in results[self.policy]])
         return Report(_text(summaries), {"out": str(self.out), "dt": dt, "summaries": summaries})
 

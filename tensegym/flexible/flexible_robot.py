@@ -101,6 +101,10 @@ class FlexibleRobot:
         self.body: Articulated = self.urdf.load(self.world, self.friction)
         if self.body.said:
             warnings.warn(f"{self.urdf.path.name}: PyBullet says: {self.body.said}", UserWarning, stacklevel=3)
+        if self.fixed_base and not self.body.moving:
+            self.world.close()
+            raise FlexureError(f"{self.urdf.path.name} has no joint that moves, and nothing else does on a fixed base; "
+                               "take fixed_base=False")  # fmt: skip
         self.joints = {self.body.joint_info[i][1].decode(): column for column, i in enumerate(self.body.moving)}
         self.links = self.urdf.link_rows(self.body)
         flexures = list(self.flexures.values())

@@ -16,7 +16,6 @@ With ``fit`` and no ``hinge`` (a joint fitted to measured data has none) the joi
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -27,6 +26,7 @@ from tensegym.flexure.hinge import as_hinge
 from tensegym.flexure.models.joint import Joint
 from tensegym.flexure.models.joint_file import load_joint
 from tensegym.flexure.models.joint_fit import fit_joint
+from tensegym.tables import read_toml
 
 from .flexible_robot import FlexibleRobot
 from .flexure_joint import FlexureJoint
@@ -42,12 +42,7 @@ def load_robot(path: str | Path, **options: Any) -> FlexibleRobot:
     loaded into PyBullet before the whole file has been read.
     """
     path = Path(path)
-    if not path.is_file():
-        raise FileNotFoundError(f"no flexure file {path}")
-    try:
-        data = tomllib.loads(path.read_text())
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise FlexureError(f"{path} is not TOML: {error}") from error
+    data = read_toml(path, "flexure file", FlexureError)
     _known(path, "the file", data, {"urdf", "flexure"})
     if not isinstance(data.get("urdf"), str):
         raise FlexureError(f"{path}: urdf = {data.get('urdf')!r}; give the name of a URDF file")

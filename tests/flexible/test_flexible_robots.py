@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from tensegym.bullet import packaged_urdf
-from tensegym.flexible import Load, load_robot
+from tensegym.errors import FlexureError
+from tensegym.flexible import FlexibleRobot, Load, load_robot
 
 HIP, GRAVITY = 0.012, 9.81  # kg, m/s^2
 
@@ -53,3 +54,11 @@ def test_the_grippers_fingers_give_alike_and_as_their_springs_say():
             lever = 0.05 * np.cos(theta)  # from the leaf's end, 20 mm below the joint, to the load
             assert flexure.wrench[2] == pytest.approx(sign * 0.2 * lever, rel=5e-3)
             assert name in robot.links
+
+
+def test_a_robot_that_nothing_could_move_is_refused():
+    with pytest.raises(FlexureError, match="no joint that moves"):
+        FlexibleRobot(packaged_urdf("passive_rod.urdf"), fixed_base=True)
+    with FlexibleRobot(packaged_urdf("passive_rod.urdf")) as free:
+        free.step(10)
+        assert free.time == pytest.approx(0.01)

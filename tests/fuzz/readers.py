@@ -135,9 +135,10 @@ def _flexures(path: Path) -> Any:
 
 
 def _urdf(path: Path) -> Any:
-    from tensegym.flexible.flexible_urdf import FlexibleUrdf
+    from tensegym.flexible import FlexibleRobot
 
-    return FlexibleUrdf(path, True)
+    with FlexibleRobot(path, fixed_base=True):
+        return None
 
 
 def _joint(path: Path) -> Any:
