@@ -162,6 +162,9 @@ def test_a_byte_order_mark_is_read_over(tmp_path):
     ("data", "words"),
     [
         ("a = 1".encode("utf-16"), "is written in UTF-16; save it as UTF-8"),
+        ("a = 1".encode("utf-32"), "is written in UTF-32; save it as UTF-8"),
+        ("a = 1".encode("utf-16-le"), "holds null bytes, as UTF-16 without a mark does"),
+        ("a = 1".encode("utf-16-be"), "holds null bytes, as UTF-16 without a mark does"),
         (b"a = 1\nb = '\xe4'", "is not UTF-8: byte 0xe4 at line 2, column 6"),
         (b"a = = 1", "is not TOML: Invalid value (at line 1, column 5)"),
         (b"a = " + b"[" * 5000, "nested too deep"),
@@ -185,7 +188,11 @@ def test_a_toml_file_that_is_none_is_one_line(tmp_path, data, words):
         ("a: &x [1]\nb: *x\n", "an alias (*name) stands there; write it out at line 2, column 4"),
         ("a: 1\na: 2\n", "the field 'a' is given twice at line 2, column 1"),
         ("a: [1,\n", "at line 2, column 1"),
-        ("a: !!python/object:os.system x", "is not YAML"),
+        ("a: !!python/object:os.system x", "a tag (!!type) stands there; leave it out at line 1, column 4"),
+        ("a: !!bool x", "a tag (!!type) stands there"),
+        ("a: !!int ''", "a tag (!!type) stands there"),
+        ("a: !!timestamp x", "a tag (!!type) stands there"),
+        ("!!map {a: !!set {x}}", "a tag (!!type) stands there; leave it out at line 1, column 1"),
         ("- 1\n- 2\n", "must be a table of fields"),
         ("a: " + "[" * 5000, "is not"),
         ("a: " + "1" * 5000, "is not read"),
@@ -199,6 +206,13 @@ def test_a_yaml_text_that_is_none_is_one_line(text, words):
         tables.parse_yaml(text, "training config x", InputError)
     assert words in str(caught.value)
     assert len(str(caught.value)) <= 300 and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("parse", [tables.parse_toml, tables.parse_yaml])
+def test_too_many_digits_are_said_without_advice_to_change_the_interpreter(parse):
+    digits = "1" * 5000
+    with pytest.raises(InputError, match=r"^x is not read: .*value has 5000 digits$"):
+        parse(f"a = {digits}" if parse is tables.parse_toml else f"a: {digits}", "x", InputError)
 
 
 def test_yaml_has_no_dates_and_may_be_empty():

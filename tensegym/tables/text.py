@@ -11,7 +11,10 @@ from typing import Any
 from .values import Error, mapping, one_line
 
 LARGEST_FILE = 4_000_000  # bytes
-_WIDE = {codecs.BOM_UTF16_LE: "UTF-16", codecs.BOM_UTF16_BE: "UTF-16", codecs.BOM_UTF32_LE: "UTF-32"}
+_WIDE = {  # UTF-32 first: its mark begins with that of UTF-16
+    codecs.BOM_UTF32_LE: "UTF-32", codecs.BOM_UTF32_BE: "UTF-32",
+    codecs.BOM_UTF16_LE: "UTF-16", codecs.BOM_UTF16_BE: "UTF-16",
+}  # fmt: skip
 
 
 def read_text(path: str | Path, what: str, error: Error, limit: int = LARGEST_FILE) -> str:
@@ -44,6 +47,8 @@ def decode(data: bytes, name: str, error: Error) -> str:
     for mark, coding in _WIDE.items():
         if data.startswith(mark):
             raise error(one_line(f"{name} is written in {coding}; save it as UTF-8"))
+    if b"\0" in data[:4]:  # the first characters of a table are ASCII
+        raise error(one_line(f"{name} holds null bytes, as UTF-16 without a mark does; save it as UTF-8"))
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as fault:
@@ -63,11 +68,11 @@ def parse_toml(text: str, name: str, error: Error) -> dict[str, Any]:
     except RecursionError as fault:
         raise error(one_line(f"{name} is not read: its brackets are nested too deep")) from fault
     except ValueError as fault:  # more digits than Python converts; a date that no calendar has
-        raise error(one_line(f"{name} is not read: {fault}")) from fault
+        raise error(one_line(f"{name} is not read: {_reason(fault)}")) from fault
 
 
 def parse_yaml(text: str, name: str, error: Error) -> dict[str, Any]:
-    """Fields of a YAML text, {} for an empty one; dates stay texts, aliases and repeated fields are refused.
+    """Fields of a YAML text, {} for an empty one; dates stay texts, aliases, tags and repeated fields are refused.
 
     Raises ``error`` naming the file by ``name``, with line and column.
     """
@@ -83,7 +88,7 @@ def parse_yaml(text: str, name: str, error: Error) -> dict[str, Any]:
     except RecursionError as fault:
         raise error(one_line(f"{name} is not read: its brackets are nested too deep")) from fault
     except (ValueError, TypeError) as fault:  # more digits than Python converts
-        raise error(one_line(f"{name} is not read: {fault}")) from fault
+        raise error(one_line(f"{name} is not read: {_reason(fault)}")) from fault
     return {} if data is None else mapping(data, name, error)
 
 
@@ -97,9 +102,14 @@ def read_yaml(path: str | Path, what: str, error: Error) -> dict[str, Any]:
     return parse_yaml(read_text(path, what, error), f"{what} {path}", error)
 
 
+def _reason(fault: Exception) -> str:
+    """What Python says is wrong, without its advice to change a setting of the interpreter."""
+    return str(fault).partition("; use sys.")[0]
+
+
 @cache
 def _loader() -> Any:
-    """yaml's safe loader without dates, aliases and repeated keys; made when first asked for, as yaml is optional."""
+    """yaml's safe loader without dates, aliases, tags and repeated keys; made when asked for, as yaml is optional."""
     import yaml
 
     class Loader(yaml.SafeLoader):  # type: ignore[misc]
@@ -112,6 +122,10 @@ def _loader() -> Any:
             if self.check_event(yaml.AliasEvent):
                 mark = self.peek_event().start_mark
                 raise yaml.composer.ComposerError(None, None, "an alias (*name) stands there; write it out", mark)
+            event = self.peek_event()
+            if event.tag is not None:  # yaml's constructors raise errors of every kind for what a tag does not fit
+                reason = "a tag (!!type) stands there; leave it out"
+                raise yaml.composer.ComposerError(None, None, reason, event.start_mark)
             return super().compose_node(parent, index)
 
         def construct_mapping(self, node: Any, deep: bool = False) -> Any:
