@@ -147,7 +147,7 @@ def _case(name: str, design: RobotDesign, dt: float, rounds: int) -> Iterator[Ro
         seen = in_turn(contestants, rounds)
     finally:
         rolling.close()
-    yield row(f"substep, {name} / bare stepSimulation", seen["substep"], seen["bare"], unit, 2.2)
+    yield row(f"substep, {name} / bare stepSimulation", seen["substep"], seen["bare"], unit, 2.0)
     yield row(f"Python calls around the kernel / substep, {name}", seen["python"], seen["substep"], unit)
     if dt == 1e-3:
         yield row(f"naive Python loop / substep, {name}", seen["naive"], seen["substep"], unit, 10, at_least=True)

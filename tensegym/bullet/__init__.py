@@ -5,6 +5,8 @@
     world.py        World: a client with bodies of one link or two, and its time step
     articulated.py  Articulated: a body of many links in a world
     camera.py       Camera: pictures of a world, and what its window shows
+    c_interface.py  PyBullet's C interface, for compiled code
+    state_buffer.py where the engine writes a body's state
 """
 
 from .articulated import Articulated

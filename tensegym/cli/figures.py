@@ -23,12 +23,12 @@ PERIOD = 0.02  # s between two rows of the record
 class StepRecord:
     """What a step looked like: every PERIOD a row, and FRAMES pictures."""
 
-    ratio: float
-    """Gear ratio, rotor over spool."""
     times: list[float] = field(default_factory=list)
     """Since the pull began [s]."""
     drives: list[FloatArray] = field(default_factory=list)
     """(drives, STATE_SIZE) states of the drives."""
+    angles: list[FloatArray] = field(default_factory=list)
+    """(drives,) spool angles [rad]."""
     tensions: list[FloatArray] = field(default_factory=list)
     """(drives,) tensions of the driven cables [N]."""
     frames: list[tuple[float, NDArray[np.uint8]]] = field(default_factory=list)
@@ -37,7 +37,7 @@ class StepRecord:
 
 def record_step(robot: TensegrityRobot, tip: Tip, settle: float = 0.5) -> StepRecord:
     """Run the step again with the camera on: the same start gives the same motion."""
-    record = StepRecord(robot.design.drive.gear_ratio)
+    record = StepRecord()
     robot.reset(tip.from_face)
     robot.step(round(settle / robot.dt))
     start = robot.time
@@ -47,6 +47,7 @@ def record_step(robot: TensegrityRobot, tip: Tip, settle: float = 0.5) -> StepRe
         now = robot.time - start
         record.times.append(now)
         record.drives.append(robot.drives.copy())
+        record.angles.append(robot.drive_angles)
         record.tensions.append(robot.tensions[robot.model.driven].copy())
         if len(record.frames) < FRAMES and now >= wanted[len(record.frames)]:
             record.frames.append((now, render(robot)))
@@ -72,7 +73,7 @@ def draw_drives(record: StepRecord, out: Path) -> None:
     for d in range(state.shape[1]):
         colour = f"C{d}"
         angle.plot(times, state[:, d, drive_kernel.COMMAND], "--", color=colour, lw=0.8)
-        angle.plot(times, state[:, d, drive_kernel.ROTOR_ANGLE] / record.ratio, color=colour, label=f"drive {d + 1}")
+        angle.plot(times, np.array(record.angles)[:, d], color=colour, label=f"drive {d + 1}")
         torque.plot(times, 1e3 * state[:, d, drive_kernel.LOAD_TORQUE], color=colour)
         tension.plot(times, np.array(record.tensions)[:, d], color=colour)
     angle.set(ylabel="spool angle [rad]", title="Dashed: commanded; full: true")

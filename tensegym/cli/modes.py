@@ -26,7 +26,7 @@ class Modes:
             split = rod in design.flexible_rods
             rods.append({"rod": f"{a}-{b}", "compression_N": float(compression[rod]),
                          "buckling_N": design.buckling_load(rod) if split else None,
-                         "pin_stiffness_N_m_per_rad": design.rod_pin(rod).stiffness if split else None})  # fmt: skip
+                         "pin_stiffness_N_m_per_rad": design.rod_pins[rod].stiffness if split else None})  # fmt: skip
         text += "\n\n" + table(
             ["rod", "compression N", "buckling N", "pin N m/rad"],
             [[r["rod"], f"{r['compression_N']:.3f}", *("-" if r[k] is None else f"{r[k]:.2f}" for k in (

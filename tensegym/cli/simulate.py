@@ -104,9 +104,9 @@ def _row(robot: TensegrityRobot) -> list[float]:
     values = [robot.time, *robot.node_positions_in_world().ravel()]
     values += robot.poses_in_world[: len(robot.design.standing.rods), 3:].ravel().tolist()
     values += [*robot.tensions.tolist(), *robot.flexure_angles.tolist(), *robot.flexure_moments.tolist()]
-    for d, row in enumerate(state):
-        values += [row[drives.COMMAND], row[drives.ROTOR_ANGLE] / robot.design.drive.gear_ratio, row[drives.CURRENT],
-                   row[drives.LOAD_TORQUE], robot.natural_lengths[first + d]]  # fmt: skip
+    for d, (row, angle) in enumerate(zip(state, robot.drive_angles, strict=True)):
+        values += [row[drives.COMMAND], angle, row[drives.CURRENT], row[drives.LOAD_TORQUE],
+                   robot.natural_lengths[first + d]]  # fmt: skip
     energies, totals = robot.energies(), robot.totals()
     values += [energies.kinetic, energies.gravity, energies.elastic, totals.drive_work, totals.electrical_energy]
     return values

@@ -59,7 +59,7 @@ class Observation:
 
 def _drive_readings(robot: TensegrityRobot) -> list[FloatArray]:
     drive, design = robot.drives, robot.design.drive
-    angle = drive[:, drives.ROTOR_ANGLE] / design.gear_ratio / robot.command_limit
+    angle = robot.drive_angles / robot.command_limit
     speed, current = drive[:, drives.ROTOR_SPEED] / design.speed_limit, drive[:, drives.CURRENT] / design.current_limit
     return [2 * angle - 1, speed, current]
 

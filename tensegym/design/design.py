@@ -71,6 +71,7 @@ class RobotDesign:
                 f"({self.payload_natural_length:.4g} m); lower the pretension or the radius, or raise the stiffness"
             )
 
+        object.__setattr__(self, "_rod_pins", {})
         self._check_flexures()
 
     def _check_flexures(self) -> None:
@@ -87,13 +88,15 @@ class RobotDesign:
                     f"{limit:.4g} N at which its {self.flexure.hinge} buckles; thicken the hinge (thickness = "
                     f"{self.flexure.thickness:g} m) or lower ElasticCable.pretension"
                 )
-            ratio = self.rod_pin(rod).buckling_ratio
+            pin = self._fitted_pin(rod)
+            ratio = pin.buckling_ratio
             if not 1 / PIN_TOLERANCE <= ratio <= PIN_TOLERANCE:
                 raise DesignError(
                     f"RodFlexure: no pin stands for a {self.flexure.hinge} of length = {self.flexure.length:g} m: "
                     f"with one the rod would buckle at {ratio:.3g} times its load, outside [{1 / PIN_TOLERANCE:g}, "
                     f"{PIN_TOLERANCE:g}]; take a shorter hinge, or one that turns rather than shifts"
                 )
+            self.rod_pins[rod] = pin
 
     @property
     def standing(self) -> Structure:
@@ -149,8 +152,13 @@ class RobotDesign:
         half = self.half_length(rod)
         return buckling_load(self.flexure.geometry(), half, half)
 
-    def rod_pin(self, rod: int) -> RodPin:
-        """The pin and the torsion spring that stand for a split rod's hinge, fitted under the rod's prestress."""
+    @property
+    def rod_pins(self) -> dict[int, RodPin]:
+        """Of each split rod, by its index, the pin and the torsion spring that stand for its hinge: fitted under the
+        rod's prestress where the design is made."""
+        return self._rod_pins  # type: ignore[attr-defined]
+
+    def _fitted_pin(self, rod: int) -> RodPin:
         from tensegym.flexure.models.rod_pin import rod_pin
 
         assert self.flexure is not None

@@ -103,7 +103,7 @@ def urdf_files(design: RobotDesign) -> dict[str, str]:
             continue
         link, rod = name.removesuffix(".urdf"), design.rod(index)
         if design.flexure and index in design.flexible_rods:
-            files[name] = split_rod_urdf(link, rod, length, design.flexure, design.rod_pin(index), colour)
+            files[name] = split_rod_urdf(link, rod, length, design.flexure, design.rod_pins[index], colour)
         else:
             files[name] = rod_urdf(link, rod, length, colour)
     if design.payload:

@@ -43,7 +43,7 @@ def robot_model(design: RobotDesign) -> Model:
         assert design.flexure is not None
         axis = _pin_axis(along, middles[i] - centre, design.flexure.plane)
         turn = Rotation.from_matrix(np.column_stack([np.cross(axis, along), axis, along]))
-        half, pin = kind.half(design.half_length(i)), design.rod_pin(i)
+        half, pin = kind.half(design.half_length(i)), design.rod_pins[i]
         place = design.half_length(i) + pin.fraction * design.flexure.length  # of the pin, from node a
         for body, node, sign in ((i, a, 1), (second[i], b, -1)):
             poses[body] = [*(nodes[node] + sign * half.centre * along), *turn.as_quat()]

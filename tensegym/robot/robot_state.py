@@ -9,6 +9,7 @@ import numpy as np
 from tensegym.arrays import FloatArray
 from tensegym.bullet import World
 from tensegym.design.design import RobotDesign
+from tensegym.physics.drives import ROTOR_ANGLE
 from tensegym.physics.geometry import points_at
 from tensegym.physics.model import STIFFNESS, Model, new_out, new_state
 from tensegym.physics.readings import (
@@ -74,6 +75,11 @@ class RobotState:
         """(w,) spool angle [rad] of the deepest allowed pull of each stiff cable."""
         design = self.design
         return design.stiff_cable.max_pull * design.stiff_cable_lengths / design.drive.spool_radius
+
+    @property
+    def drive_angles(self) -> FloatArray:
+        """(w,) how far each drive has turned its spool, play apart [rad], against the commanded angles."""
+        return self.drives[:, ROTOR_ANGLE] / self.design.drive.gear_ratio
 
     @property
     def poses_in_world(self) -> FloatArray:
