@@ -104,5 +104,5 @@ def load_table(path: Path) -> list[Tip]:
                 tuple(row["travel"]), row["peak_tension"])
             for row in json.loads(path.read_text())
         ]  # fmt: skip
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise InputError(f"{path} is not a table of tips: {error}") from error

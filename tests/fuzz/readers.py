@@ -53,8 +53,8 @@ class Reader(NamedTuple):
 def to_toml(tree: Any) -> bytes:
     try:
         return tomli_w.dumps(_without_none(tree)).encode()
-    except (TypeError, ValueError, AttributeError):  # no TOML says this
-        return repr(tree).encode()
+    except (TypeError, ValueError, AttributeError, RecursionError):  # no TOML says this
+        return _written(tree)
 
 
 def _without_none(tree: Any) -> Any:
@@ -70,14 +70,25 @@ def from_toml(text: bytes) -> Any:
 
 
 def to_json(tree: Any) -> bytes:
-    return json.dumps(tree, default=str).encode()
+    try:
+        return json.dumps(tree, default=str).encode()
+    except (ValueError, RecursionError):
+        return _written(tree)
 
 
 def to_yaml(tree: Any) -> bytes:
     try:
         return yaml.safe_dump(tree).encode()
-    except yaml.YAMLError:
+    except (yaml.YAMLError, ValueError, RecursionError):
+        return _written(tree)
+
+
+def _written(tree: Any) -> bytes:
+    """As Python writes it, which no file of these kinds is."""
+    try:
         return repr(tree).encode()
+    except (ValueError, RecursionError):  # too many digits, too deep
+        return b"[" * 5000
 
 
 def _files(*patterns: str) -> list[bytes]:
