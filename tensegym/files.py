@@ -8,7 +8,7 @@ import shutil
 import socket
 import sys
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
@@ -71,18 +71,16 @@ def write_json(path: Path, data: dict[str, Any]) -> None:
     write_text(path, json.dumps({"version": VERSION, **data}, indent=1, allow_nan=False) + "\n")
 
 
-def read_json(path: Path) -> dict[str, Any]:
-    """What `write_json` wrote, or was written before files had versions.
+def read_json(path: Path) -> Any:
+    """What `write_json` wrote; or what was written before files had versions, which may be a list.
 
-    Raises InputError for a file that is no such data, or newer than this program; OSError where it cannot be read.
+    Raises InputError for a file that is no JSON, or newer than this program; OSError where it cannot be read.
     """
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path} is not JSON, or cut short: {error}") from None
-    if not isinstance(data, dict):
-        raise InputError(f"{path} holds no table of names and values")
-    return without_version(data, path)
+    return without_version(data, path) if isinstance(data, dict) else data
 
 
 def without_version(data: dict[str, Any], path: Path | str) -> dict[str, Any]:
@@ -93,9 +91,9 @@ def without_version(data: dict[str, Any], path: Path | str) -> dict[str, Any]:
     return {key: value for key, value in data.items() if key != "version"}
 
 
-def is_empty(folder: Path) -> bool:
-    """Whether a folder is missing or holds nothing but what a killed command left half written."""
-    return not folder.exists() or all(entry.name.startswith(_OWN) for entry in folder.iterdir())
+def is_empty(folder: Path, but: Collection[str] = ()) -> bool:
+    """Whether a folder is missing, or holds nothing ``but`` these and what a killed command left half written."""
+    return not folder.exists() or all(e.name.startswith(_OWN) or e.name in but for e in folder.iterdir())
 
 
 @contextmanager
@@ -135,8 +133,21 @@ def _tidy(folder: Path) -> None:
         whole = left.with_name(left.name.removeprefix(_OLD))
         if left.name.startswith(_OLD) and not whole.exists():
             os.replace(left, whole)
-        elif left.name != _LOCK:
+        elif left.name != _LOCK and not _alive(left.name.removeprefix(_OWN).split("-")[0]):
             _remove(left)
+
+
+def _alive(process: str) -> bool:
+    """Whether there is another process of that number; a number that is none is none's."""
+    if sys.platform == "win32":
+        return process.isdigit()
+    try:
+        os.kill(int(process), 0)
+    except PermissionError:
+        return True
+    except (ValueError, ProcessLookupError):
+        return False
+    return int(process) != os.getpid()
 
 
 def _locked(path: Path) -> int:
@@ -172,7 +183,7 @@ def _try_lock(descriptor: int, path: Path) -> bool:
         return False
     except OSError:  # a file system without locks: believe what its last holder wrote
         holder = _holder(path)
-        return holder.get("host") != socket.gethostname() or not Path(f"/proc/{holder.get('process')}").exists()
+        return holder.get("host") != socket.gethostname() or not _alive(str(holder.get("process")))
     return True
 
 

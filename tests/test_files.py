@@ -85,11 +85,11 @@ def test_files_have_a_version_and_newer_ones_are_refused(tmp_path):
             read_json(path)
 
 
-@pytest.mark.parametrize("text", ["", '{"x": 1', "[1]", "\ufeff{}", "[" * 100_000])
+@pytest.mark.parametrize("text", ["", '{"x": 1', "\ufeff{}", "[" * 100_000])
 def test_what_is_no_such_file_is_refused_in_one_line(tmp_path, text):
     path = tmp_path / "a.json"
     path.write_text(text)
-    with pytest.raises(InputError, match=r"a\.json (is not JSON|holds no table)"):
+    with pytest.raises(InputError, match=r"a\.json is not JSON"):
         read_json(path)
 
 

@@ -6,15 +6,12 @@ import csv
 from collections.abc import Mapping
 from pathlib import Path
 
+from tensegym.plotting import new_figure, save
+
 
 def draw_curve(runs: Mapping[str, Path], out: Path) -> None:
     """One line a run: median speed of the training episodes against environment steps; slip share below it."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, (top, bottom) = plt.subplots(2, 1, sharex=True, figsize=(7, 6))
+    figure, (top, bottom) = new_figure(2, size=(7, 6), layout="tight", sharex=True)
     for name, path in runs.items():
         with path.open() as file:
             rows = list(csv.DictReader(file))
@@ -28,6 +25,4 @@ def draw_curve(runs: Mapping[str, Path], out: Path) -> None:
     for axis in (top, bottom):
         axis.grid(alpha=0.3)
         axis.legend()
-    figure.tight_layout()
-    figure.savefig(out, dpi=120)
-    plt.close(figure)
+    save(figure, out, dpi=120)

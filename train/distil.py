@@ -16,6 +16,7 @@ import tyro
 from tensegym.arrays import FloatArray, IntArray
 from tensegym.control.cpg import Cpg, CpgController, cable_ends_in_heading, drive_kinds, feedback_text, pose_terms
 from tensegym.control.policy import PolicyController
+from tensegym.files import write_text
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.tasks.policy_trials import EPISODE_SECONDS, policy_setup
 from tensegym.tasks.trials import iterate
@@ -42,7 +43,7 @@ class Distil:
             examples.generator = self._generator(examples, kinds) if number else None
             seeds = range(number * self.episodes, (number + 1) * self.episodes)
             speeds.append(np.mean([result.gait.speed_lps for result in iterate(setup, examples, seeds)]))
-        self.out.write_text(feedback_text(fit(np.array(examples.terms), np.array(examples.commands), kinds)))
+        write_text(self.out, feedback_text(fit(np.array(examples.terms), np.array(examples.commands), kinds)))
         return f"{self.out}: mean speed round by round {', '.join(f'{speed:.3f}' for speed in speeds)} L/s"
 
     def _generator(self, examples: _Examples, kinds: IntArray) -> CpgController:

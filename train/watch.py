@@ -11,6 +11,8 @@ import numpy as np
 from stable_baselines3.common.callbacks import BaseCallback
 from tqdm import tqdm
 
+from tensegym.files import replace_file
+
 CURVE_FIELDS = ("steps", "hours", "episodes", "speed_lps", "speed_lps_p10", "slip_share", "tips", "audit_excess",
                 "action_std")  # fmt: skip
 
@@ -41,7 +43,9 @@ class Watch(BaseCallback):
             np.mean([g["tips"] for g in self.gaits]), np.max([g["audit_excess"] for g in self.gaits]),
             float(self.model.policy.log_std.detach().exp().mean()),
         )  # fmt: skip
-        with self.path.open("a", newline="") as file:
+        before = self.path.read_text()
+        with replace_file(self.path) as file:
+            file.write(before)
             csv.writer(file).writerow([f"{v:.6g}" if isinstance(v, float) else v for v in row])
         for name, value in zip(CURVE_FIELDS[3:], row[3:], strict=True):
             self.logger.record(f"gait/{name}", float(value))

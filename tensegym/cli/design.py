@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from tensegym.errors import InputError
+from tensegym.files import lock_folder, write_text
 from tensegym.report import Report, table
-from tensegym.search.engine import check_engine, engine
+from tensegym.search.engine import Engine, check_engine, engine
 from tensegym.search.evaluate import TrialResult
 from tensegym.search.loop import run_search
 from tensegym.search.problem import Problem, load_problem, problem_from
@@ -42,15 +43,12 @@ class _Search:
     def _check(self) -> None:
         check_engine(self.engine, self.address)
 
-    def _go(self, problem: Problem, store: Store, budget: int, out: Path) -> Report:
+    def _go(self, problem: Problem, store: Store, pool: Engine, budget: int, out: Path) -> Report:
         from tqdm import tqdm
 
         store.note("budget", budget)
         done = store.finished()
-        with (
-            engine(self.engine, self.jobs, self.address) as pool,
-            tqdm(total=budget, initial=len(done), unit="trial", file=sys.stderr, smoothing=0.05) as bar,
-        ):
+        with tqdm(total=budget, initial=len(done), unit="trial", file=sys.stderr, smoothing=0.05) as bar:
             best = max((_score(problem, o) for _, o in done.values()), default=float("-inf"))
 
             def progress(outcome: TrialResult) -> None:
@@ -81,19 +79,11 @@ class Run(_Search):
 
     def run(self) -> Report:
         self._check()
-        if self.out.exists() and not self.out.is_dir():
-            raise InputError(f"--out {self.out} is a file; give a folder")
         problem = load_problem(self.task).with_settings(seed=self.seed, sampler=self.sampler)
-        made = not self.out.exists()
-        self.out.mkdir(parents=True, exist_ok=True)
-        try:
+        with engine(self.engine, self.jobs, self.address) as pool, lock_folder(self.out):
             store = Store(self.out, problem, self.storage)
-        except InputError:
-            if made:
-                self.out.rmdir()
-            raise
-        (self.out / "storage.txt").write_text(masked(self.storage or ""))
-        return self._go(problem, store, self.budget, self.out)
+            write_text(self.out / "storage.txt", masked(self.storage or ""))
+            return self._go(problem, store, pool, self.budget, self.out)
 
 
 @dataclass(frozen=True)
@@ -107,8 +97,10 @@ class Resume(_Search):
 
     def run(self) -> Report:
         self._check()
-        problem, store = open_search(self.folder, self.storage)
-        return self._go(problem, store, self.budget or store.noted("budget"), self.folder)
+        open_search(self.folder, self.storage)  # where there is none, nothing is started
+        with engine(self.engine, self.jobs, self.address) as pool, lock_folder(self.folder):
+            problem, store = open_search(self.folder, self.storage)
+            return self._go(problem, store, pool, self.budget or store.noted("budget"), self.folder)
 
 
 @dataclass(frozen=True)

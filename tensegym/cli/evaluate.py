@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from tensegym.control.table import make_controller
-from tensegym.errors import InputError
-from tensegym.files import write_text
+from tensegym.files import VERSION, lock_folder, write_text
 from tensegym.report import Report, table, to_json
 from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP
 from tensegym.tasks.figures import GaitRecorder, draw_gait, write_video
@@ -48,10 +47,10 @@ class Evaluate:
     def run(self) -> Report:
         setup = policy_setup(self.policy, seconds=self.seconds, dt=self.dt, observation=self.observation)
         check_setup(setup)  # a policy that does not fit fails here, before anything is written
-        if self.out.exists() and not self.out.is_dir():
-            raise InputError(f"--out {self.out} is a file; give a folder")
-        self.out.mkdir(parents=True, exist_ok=True)
+        with lock_folder(self.out):
+            return self._evaluate(setup)
 
+    def _evaluate(self, setup: Setup) -> Report:
         dt = setup.task.dt
         setups = {self.policy: setup}
         if self.half_step:
@@ -63,7 +62,7 @@ class Evaluate:
         summaries = {name: summarise(each) for name, each in results.items()}
         data = {"policy": self.policy, "dt": dt, "seconds": self.seconds, "summaries": summaries,
                 "episodes": {name: [result.row() for result in each] for name, each in results.items()}}  # fmt: skip
-        write_text(self.out / "metrics.json", to_json(data, indent=1) + "\n")
+        write_text(self.out / "metrics.json", to_json({"version": VERSION, **data}, indent=1) + "\n")
         self._draw(setup, [result.gait.speed_lps for result in results[self.policy]])
         return Report(_text(summaries), {"out": str(self.out), "dt": dt, "summaries": summaries})
 

@@ -7,6 +7,7 @@ command is imported, so `tensegym --help` stays fast and `tensegym simulate` nev
 from __future__ import annotations
 
 import importlib
+import signal
 import sys
 from typing import Any
 
@@ -84,9 +85,21 @@ def run(argv: list[str], commands: dict[str, tuple[str, str]] = COMMANDS, progra
     return 0 if report.passed else 1
 
 
+class _Terminated(KeyboardInterrupt):
+    """SIGTERM, which ends a command as Ctrl-C does: workers first, files whole."""
+
+
+def _terminate(*_: object) -> None:
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # a second one does not wait
+    raise _Terminated
+
+
 def main() -> None:
+    signal.signal(signal.SIGTERM, _terminate)
     try:
         status = run(sys.argv[1:])
+    except _Terminated:
+        status = 143
     except KeyboardInterrupt:
         status = 130
     except BrokenPipeError:

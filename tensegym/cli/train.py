@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 import platform
 import subprocess
 from dataclasses import dataclass, replace
@@ -14,6 +13,7 @@ from typing import Any
 import yaml
 
 from tensegym.errors import InputError
+from tensegym.files import is_empty, lock_folder, replace_file, write_json, write_text
 from tensegym.report import Report, table
 from tensegym.train.checkpoint import last_state
 from tensegym.train.config import TrainConfig, load_config
@@ -23,6 +23,8 @@ from tensegym.train.start_policy import check_start
 from tensegym.train.watch import CURVE_FIELDS
 
 from .options import Count, Seed
+
+_BEGUN = ("versions.json", "curve.csv", "config.yaml")  # all there is of a run that was killed as it began
 
 
 @dataclass(frozen=True)
@@ -42,11 +44,14 @@ class Train:
 
     def run(self) -> Report:
         out = self.out or Path("runs") / f"{Path(self.config).stem}-s{self.seed}"
-        config, state = self._go_on(out) if self.resume else self._begin(out)
-        steps = train(config, state["seed"], out, state)
-        with (out / "curve.csv").open(newline="") as file:
-            rows = list(csv.DictReader(file))
-        draw_curve({out.name: out / "curve.csv"}, out / "curve.png")
+        if self.resume and not out.is_dir():
+            raise FileNotFoundError(f"nothing to resume in {out}: no state.json")
+        with lock_folder(out):
+            config, state = self._go_on(out) if self.resume else self._begin(out)
+            steps = train(config, state["seed"], out, state)
+            with (out / "curve.csv").open(newline="") as file:
+                rows = list(csv.DictReader(file))
+            draw_curve({out.name: out / "curve.csv"}, out / "curve.png")
         best = max((float(row["speed_lps"]) for row in rows), default=None)
         data = {"out": str(out), "seed": state["seed"], "steps": steps, "best_median_speed_lps": best,
                 "last": {name: float(value) for name, value in rows[-1].items()} if rows else {}}  # fmt: skip
@@ -54,21 +59,18 @@ class Train:
 
     def _begin(self, out: Path) -> tuple[TrainConfig, dict[str, Any]]:
         """A new run's folder; nothing is written before all of it has been looked at."""
-        if out.exists() and not out.is_dir():
-            raise InputError(f"--out {out} is a file; give a folder")
-        if out.exists() and any(out.iterdir()):
+        if not is_empty(out, but=_BEGUN):
             raise InputError(f"folder {out} is not empty; take another --out, or --resume to go on with it")
         config = load_config(self.config)
         if self.steps is not None:
             config = replace(config, steps=self.steps)
         _check(config)
         state = {"seed": self.seed, "steps": 0, "seconds": 0.0}
-        out.mkdir(parents=True, exist_ok=True)
-        _write_config(config, out)
-        (out / "versions.json").write_text(json.dumps(_versions(), indent=1))
-        (out / "state.json").write_text(json.dumps(state))
-        with (out / "curve.csv").open("w", newline="") as file:
+        write_json(out / "versions.json", _versions())
+        with replace_file(out / "curve.csv") as file:
             csv.writer(file).writerow(CURVE_FIELDS)
+        _write_config(config, out)
+        write_json(out / "state.json", state)
         return config, state
 
     def _go_on(self, out: Path) -> tuple[TrainConfig, dict[str, Any]]:
@@ -94,7 +96,7 @@ def _check(config: TrainConfig) -> None:
 
 
 def _write_config(config: TrainConfig, out: Path) -> None:
-    (out / "config.yaml").write_text(yaml.safe_dump(config.as_dict(), sort_keys=False))
+    write_text(out / "config.yaml", yaml.safe_dump(config.as_dict(), sort_keys=False))
 
 
 def _versions() -> dict[str, str]:

@@ -5,7 +5,6 @@ A table takes minutes to make for a design; that of another design of the same t
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -14,6 +13,7 @@ import numpy as np
 
 from tensegym.arrays import FloatArray
 from tensegym.errors import DesignError, InputError
+from tensegym.files import read_json, write_json
 from tensegym.robot.reading import heading_rotation
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.tables import Checked, bounded
@@ -91,18 +91,19 @@ class Walker:
 
 def save_table(table: Sequence[Tip], path: Path) -> None:
     """Write a table of tips as JSON."""
-    path.write_text(json.dumps([asdict(tip) for tip in table]))
+    write_json(path, {"tips": [asdict(tip) for tip in table]})
 
 
 def load_table(path: Path) -> list[Tip]:
     """Read what `save_table` wrote."""
     if not path.is_file():
         raise FileNotFoundError(f"no table of tips {path}; make one with `tensegym step --all-faces --out DIR`")
+    data = read_json(path)
     try:
         return [
             Tip(Pull(**(row["pull"] | {"drives": tuple(row["pull"]["drives"])})), row["from_face"], row["to_face"],
                 tuple(row["travel"]), row["peak_tension"])
-            for row in json.loads(path.read_text())
+            for row in (data["tips"] if isinstance(data, dict) else data)
         ]  # fmt: skip
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise InputError(f"{path} is not a table of tips: {error}") from error

@@ -21,6 +21,7 @@ import numpy as np
 import tomli_w
 
 from tensegym.errors import DesignError
+from tensegym.files import VERSION, without_version, write_text
 from tensegym.structure.structure import Structure, six_rod
 
 from .design import PRESETS, RobotDesign
@@ -63,7 +64,7 @@ def load_design(path: str | Path) -> RobotDesign:
         data = tomllib.loads(path.read_text())
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise DesignError(f"{path} is not TOML: {error}") from error
-    return design_from_dict(data)
+    return design_from_dict(without_version(data, path))
 
 
 def design_from_dict(data: dict[str, Any]) -> RobotDesign:
@@ -146,4 +147,4 @@ def design_to_dict(design: RobotDesign) -> dict[str, Any]:
 
 def save_design(design: RobotDesign, path: str | Path) -> None:
     """Write a TOML file that `load_design` reads back to an equal design."""
-    Path(path).write_text(tomli_w.dumps(design_to_dict(design)))
+    write_text(Path(path), tomli_w.dumps({"version": VERSION, **design_to_dict(design)}))

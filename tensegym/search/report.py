@@ -16,6 +16,7 @@ import tomli_w
 from tensegym.arrays import FloatArray
 from tensegym.design.design_file import design_from_dict, save_design
 from tensegym.design.urdf_writer import urdf_files
+from tensegym.files import VERSION, replace_path, write_text
 
 from .confirm import FIRST_SEED, TIME_STEP, Confirmed, summary
 from .figures import draw_best_gait, draw_importance, draw_pareto, draw_progress
@@ -76,12 +77,12 @@ def write_report(
     values = finished[confirmed.number][0]
     tables = problem.space.apply(values)
     design = design_from_dict(tables["design"])
-    best = folder / "best"
-    (best / "urdf").mkdir(parents=True, exist_ok=True)
-    save_design(design, best / "design.toml")
-    (best / "controller.toml").write_text(tomli_w.dumps(tables["controller"]))
-    for name, text in urdf_files(design).items():
-        (best / "urdf" / name).write_text(text)
+    with replace_path(folder / "best") as best:
+        (best / "urdf").mkdir(parents=True)
+        save_design(design, best / "design.toml")
+        write_text(best / "controller.toml", tomli_w.dumps({"version": VERSION, **tables["controller"]}))
+        for name, text in urdf_files(design).items():
+            write_text(best / "urdf" / name, text)
 
     curves = {"this search": objective_values(problem, finished)}
     curves |= {name: objective_values(p, done) for name, (p, done) in others.items()}
@@ -109,7 +110,7 @@ def write_report(
     data = {"folder": str(folder), "goal": str(problem.task.goal), "goal_met": met, "trial": confirmed.number,
             "trials": len(finished), "seconds": store.seconds(), "confirmed": columns, "importance": shares,
             "best_so_far": {name: _last_best(c, objectives[0].maximise) for name, c in curves.items()}}  # fmt: skip
-    (folder / "report.md").write_text("\n".join(_lines(problem, store, values, data, pictures)) + "\n")
+    write_text(folder / "report.md", "\n".join(_lines(problem, store, values, data, pictures)) + "\n")
     return data
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tensegym.arrays import FloatArray
+from tensegym.files import replace_path
 from tensegym.physics.drives import CURRENT
 from tensegym.plotting import new_figure, save
 from tensegym.robot.rendering import render
@@ -95,4 +96,5 @@ def write_video(frames: Sequence[NDArray[np.uint8]], out: Path) -> None:
     """H.264."""
     from moviepy import ImageSequenceClip
 
-    ImageSequenceClip(list(frames), fps=FRAMES_PER_SECOND).write_videofile(str(out), logger=None, audio=False)
+    with replace_path(out) as fresh:
+        ImageSequenceClip(list(frames), fps=FRAMES_PER_SECOND).write_videofile(str(fresh), logger=None, audio=False)

@@ -1,0 +1,69 @@
+"""Commands that are ended from outside: the status a shell expects, whole files, no process left."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+COMMAND = [sys.executable, "-c", "from tensegym.cli.main import main; main()"]
+TASK = """
+[task]
+motion = "roll"
+seconds = 600.0
+[controller]
+amplitudes = [0.5, 0.5]
+[space]
+"controller.lags" = {low = -1.0, high = 1.0}
+"""
+
+
+def processes(session):
+    """Processes of a session that are not over."""
+    found = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            state, _, _, own = stat.read_text().rsplit(")", 1)[1].split()[:4]
+        except OSError:
+            continue
+        if int(own) == session and state != "Z":
+            found.append(int(stat.parent.name))
+    return found
+
+
+def wait_for(condition):
+    deadline = time.monotonic() + 60
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs /proc")
+@pytest.mark.parametrize(("how", "status"), [(signal.SIGTERM, 143), (signal.SIGINT, 130), (signal.SIGKILL, -9)])
+def test_a_search_that_is_ended_leaves_no_process_and_blocks_no_other(tmp_path, how, status):
+    (tmp_path / "task.toml").write_text(TASK)
+    argv = [*COMMAND, "design", "run", "--task", "task.toml", "--jobs", "2", "--out", "out"]
+    first = subprocess.Popen(argv, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    wait_for(lambda: (tmp_path / "out" / "storage.txt").exists() and len(processes(first.pid)) >= 4)
+
+    second = subprocess.run(argv, cwd=tmp_path, capture_output=True, text=True)
+    assert second.returncode == 2
+    assert f"out is in use by `-c design run`, process {first.pid} on" in second.stderr
+
+    if how == signal.SIGINT:
+        os.killpg(first.pid, how)  # as a terminal does
+    else:
+        first.send_signal(how)
+    assert first.wait(60) == status
+    assert "Traceback" not in first.stderr.read()
+    wait_for(lambda: not processes(first.pid))
+    status = subprocess.run([*COMMAND, "design", "status", "--folder", "out", "--json"], cwd=tmp_path,
+                            capture_output=True, text=True)  # fmt: skip
+    assert json.loads(status.stdout)["trials"] == 0
+    left = {path.name for path in (tmp_path / "out").iterdir()} - {"storage.txt", "study.db", "study.db-wal",
+                                                                  "study.db-shm"}  # fmt: skip
+    assert left <= ({".tensegym-lock"} if how == signal.SIGKILL else set())
