@@ -264,6 +264,11 @@ def test_toml_is_read_as_its_writer_wrote_it(table):
 
 
 def test_rows_are_named_from_1():
-    with pytest.raises(InputError, match=r"cables row 2 = \[1, 2, 3\] has 3 entries; every row holds 2 numbers"):
+    with pytest.raises(InputError, match=r"cables row 2 = \[1, 2, 3\] has 3 entries; a row holds 2 numbers"):
         tables.as_rows([[1, 2], [1, 2, 3]], 2, "cables", InputError)
     assert tables.as_rows([], 3, "nodes", InputError).shape == (0, 3)
+    with pytest.raises(InputError, match=r"cables row 1 = \[1.0, 2.5\]: entry 2 is no whole number"):
+        tables.as_whole_rows([[1, 2.5]], 2, "cables", InputError)
+    with pytest.raises(InputError, match=r"cables row 1\[2\] = nan is no finite number"):
+        tables.as_whole_rows([[1, float("nan")]], 2, "cables", InputError)
+    assert tables.as_whole_rows([[1, 2]], 2, "cables", InputError).tolist() == [[1, 2]]

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tensegym.arrays import FloatArray, IntArray, frozen
-from tensegym.errors import DesignError
+from tensegym.errors import DesignError, FlexureError
 from tensegym.structure import structure as structures
 from tensegym.structure.equilibrium import check_balance
 from tensegym.structure.form_finding import form_find
 from tensegym.structure.structure import Structure
-from tensegym.tables import bounded, check_fields
+from tensegym.tables import bounded, check_fields, one_line
 
 from .parameters import Drive, ElasticCable, Payload, Rod, RodFlexure, StiffCable
 
@@ -72,7 +72,10 @@ class RobotDesign:
             )
 
         object.__setattr__(self, "_rod_pins", {})
-        self._check_flexures()
+        try:
+            self._check_flexures()
+        except FlexureError as error:
+            raise DesignError(one_line(f"RodFlexure: {error}")) from error
 
     def _check_flexures(self) -> None:
         """Refuse rods that the prestress would buckle, and hinges that no pin stands for."""

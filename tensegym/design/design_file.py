@@ -11,31 +11,32 @@
 
 from __future__ import annotations
 
-import difflib
-import tomllib
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import tomli_w
 
 from tensegym.errors import DesignError
 from tensegym.files import VERSION, without_version, write_text
-from tensegym.structure.structure import Structure, six_rod
+from tensegym.structure.structure import PAPER_ROD_LENGTH, ROD_LENGTHS, WHAT_A_ROW_HOLDS, Structure, six_rod
+from tensegym.tables import (
+    Checked,
+    as_rows,
+    as_text,
+    as_whole_rows,
+    bounded,
+    fill,
+    in_file,
+    known,
+    one_line,
+    read_fields,
+    read_toml,
+    show,
+)
 
 from .design import PRESETS, RobotDesign
-from .parameters import Drive, ElasticCable, Payload, Rod, RodFlexure, StiffCable
 
-_GROUPS = {
-    "passive_rod": Rod,
-    "active_rod": Rod,
-    "elastic_cable": ElasticCable,
-    "stiff_cable": StiffCable,
-    "drive": Drive,
-    "payload": Payload,
-    "flexure": RodFlexure,
-}
 _MEMBERS = ("rods", "cables", "stiff_cables")
 
 
@@ -51,81 +52,50 @@ def as_design(value: str | Path | dict[str, Any] | RobotDesign) -> RobotDesign:
     if str(value).endswith(".toml"):
         return load_design(value)
     if value not in PRESETS:
-        raise DesignError(f"unknown preset {str(value)!r}; one of {', '.join(PRESETS)}, or a path that ends in .toml")
+        names = ", ".join(PRESETS)
+        raise DesignError(one_line(f"unknown preset {show(str(value))}; one of {names}, or a path that ends in .toml"))
     return PRESETS[str(value)]()
 
 
 def load_design(path: str | Path) -> RobotDesign:
-    """Read a TOML file."""
-    path = Path(path)
-    if not path.is_file():
-        raise FileNotFoundError(f"no design file {path}")
-    try:
-        data = tomllib.loads(path.read_text())
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise DesignError(f"{path} is not TOML: {error}") from error
-    return design_from_dict(without_version(data, path))
+    """Read a TOML file. Raises as `as_design` does, naming the file."""
+    data = without_version(read_toml(path, "design file", DesignError), path)
+    with in_file(f"design file {path}"):
+        return design_from_dict(data)
 
 
 def design_from_dict(data: dict[str, Any]) -> RobotDesign:
-    """Build a design from nested plain types; fields left out keep the preset's values."""
-    data = dict(data)
-    preset = data.pop("preset", "six_rod")
+    """Build a design from nested plain types; fields left out keep the preset's values. Raises as `as_design` does."""
+    data = dict(known(data, ("preset", *(f.name for f in fields(RobotDesign))), "the design", DesignError))
+    preset = as_text(data.pop("preset", "six_rod"), "preset", DesignError)
     if preset not in PRESETS:
-        raise DesignError(f"unknown preset {preset!r}; one of {', '.join(PRESETS)}")
-    base = PRESETS[preset]()
-    allowed = {f.name for f in fields(RobotDesign)}
-    _known("the design", data, allowed)
-    changes: dict[str, Any] = {}
-    for name, value in data.items():
-        if name == "structure":
-            changes[name] = _structure(value, base.structure)
-        elif name in _GROUPS:
-            changes[name] = _group(name, value, getattr(base, name))
-        else:
-            changes[name] = _scalar(name, value, getattr(base, name))
-    return replace(base, **changes)
+        raise DesignError(one_line(f"unknown preset {show(preset)}; one of {', '.join(PRESETS)}"))
+    base, changes = PRESETS[preset](), dict[str, Any]()
+    if "structure" in data:
+        changes["structure"] = _structure(data.pop("structure"), base.structure)
+    return replace(base, **changes, **read_fields(RobotDesign, data, "", DesignError, base))
 
 
-def _known(where: str, data: Any, allowed: set[str]) -> None:
-    if not isinstance(data, dict):
-        raise DesignError(f"{where} = {data!r} must be a table of fields")
-    for name in data:
-        if name not in allowed:
-            close = difflib.get_close_matches(name, allowed, 1)
-            hint = f"did you mean {close[0]!r}?" if close else f"one of {', '.join(sorted(allowed))}"
-            raise DesignError(f"unknown field {name!r} in {where}; {hint}")
+@dataclass(frozen=True)
+class _SixRods(Checked, error=DesignError):
+    """The six-rod structure by its size."""
 
-
-def _scalar(where: str, value: Any, like: Any) -> Any:
-    if isinstance(like, bool) and not isinstance(value, bool):
-        raise DesignError(f"{where} = {value!r} must be true or false")
-    if isinstance(like, str) and not isinstance(value, str):
-        raise DesignError(f"{where} = {value!r} must be a text")
-    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
-
-
-def _group(name: str, data: Any, base: Any) -> Any:
-    kind = _GROUPS[name]
-    _known(f"[{name}]", data, {f.name for f in fields(kind)})
-    base = kind() if base is None else base
-    return replace(base, **{k: _scalar(f"{name}.{k}", v, getattr(base, k)) for k, v in data.items()})
+    rod_length: float = bounded(ROD_LENGTHS.low, ROD_LENGTHS.high, PAPER_ROD_LENGTH, "m", "of all six rods")
+    spacing: float | None = bounded(ROD_LENGTHS.low, ROD_LENGTHS.high, None, "m", "of parallel rods; else half a rod")
 
 
 def _structure(data: Any, base: Structure) -> Structure:
-    if isinstance(data, dict) and set(data) & {"rod_length", "spacing"}:
-        _known("[structure] with rod_length or spacing", data, {"rod_length", "spacing"})
-        for name, value in data.items():
-            if not (isinstance(value, int | float) and 0.01 <= value <= 100):
-                raise DesignError(f"structure.{name} = {value!r} is outside [0.01, 100] m")
-        return six_rod(**data)
-    _known("[structure]", data, {"nodes", *_MEMBERS})
-    parts = {"nodes": base.nodes, **{m: getattr(base, m) for m in _MEMBERS}}
+    if isinstance(data, dict) and {"rod_length", "spacing"} & data.keys():
+        size = fill(_SixRods, data, "structure", DesignError)
+        return six_rod(size.rod_length, size.spacing)
+    known(data, ("nodes", *_MEMBERS), "structure", DesignError)
+    parts: dict[str, Any] = {name: getattr(base, name) for name in ("nodes", *_MEMBERS)}
     for name, value in data.items():
-        try:
-            parts[name] = np.array(value, dtype=float if name == "nodes" else np.int64) - (name != "nodes")
-        except (TypeError, ValueError) as error:
-            raise DesignError(f"structure.{name} must be rows of numbers: {error}") from error
+        where = f"structure.{name}"
+        if name == "nodes":
+            parts[name] = as_rows(value, 3, where, DesignError, "x, y, z in m")
+        else:
+            parts[name] = as_whole_rows(value, 2, where, DesignError, WHAT_A_ROW_HOLDS) - 1
     return Structure(**parts)
 
 

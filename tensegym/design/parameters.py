@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from tensegym.errors import DesignError
-from tensegym.tables import Checked, check_fields, choice, noted
+from tensegym.errors import DesignError, FlexureError
+from tensegym.tables import Checked, check_fields, choice, noted, one_line
 from tensegym.tables import bounded as bounded
 
 if TYPE_CHECKING:
@@ -77,9 +77,9 @@ class HalfRod:
 class ElasticCable(Checked, error=DesignError):
     """The elastic cables: spring-dampers, tension only unless ``two_way``."""
 
-    stiffness: float = bounded(0, 1e6, 300.0, "N/m", "spring rate", open_low=True)
-    damping: float = bounded(0, 1e4, 5.0, "N s/m", "damper rate")
-    pretension: float = bounded(0, 1e4, 10.0, "N", "tension at rest, which sets the natural length")
+    stiffness: float = bounded(0, 1e6, 300.0, "N/m", "spring rate of every elastic cable", open_low=True)
+    damping: float = bounded(0, 1e4, 5.0, "N s/m", "damper rate of every elastic cable")
+    pretension: float = bounded(0, 1e4, 10.0, "N", "tension at rest of every elastic cable, which sets its length")
     natural_length: float | None = bounded(0, 100, None, "m", "given, it overrides the pretension (the paper's way)",
                                            open_low=True)
     two_way: bool = noted(False, "push as well as pull, as the paper's springs do")
@@ -150,7 +150,10 @@ class RodFlexure(Checked, error=DesignError):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.geometry()
+        try:
+            self.geometry()
+        except FlexureError as error:
+            raise DesignError(one_line(f"RodFlexure: {error}")) from error
 
     def geometry(self) -> Hinge:
         """The hinge, for the finite elements. Raises FlexureError for an unknown one or sizes that make none."""

@@ -14,9 +14,11 @@ from numpy.typing import ArrayLike
 
 from tensegym.arrays import FloatArray, IntArray, frozen
 from tensegym.errors import StructureError
+from tensegym.tables import Range, as_rows, as_whole_rows
 
 PAPER_ROD_LENGTH = 2 * 8.42 / 24  # m, printed as 0.7016
 PAPER_SPACING = 2 * 0.3125  # m between parallel rods in the paper's node table
+ROD_LENGTHS = Range(0.01, 30.0)  # m; a robot in mm read as one in m is outside
 
 _SIX_RODS = [(1, 2), (3, 4), (5, 6), (7, 8), (9, 10), (11, 12)]
 _SIX_ROD_CABLES = [
@@ -43,12 +45,7 @@ class Structure:
     stiff_cables: IntArray
 
     def __post_init__(self) -> None:
-        nodes = np.array(self.nodes, dtype=float)
-        if nodes.ndim != 2 or nodes.shape[1] != 3 or len(nodes) < 2:
-            raise StructureError(f"nodes have shape {nodes.shape}; give one row of x, y, z per node")
-        if not np.isfinite(nodes).all():
-            bad = int(np.argwhere(~np.isfinite(nodes))[0, 0]) + 1
-            raise StructureError(f"node {bad} is {nodes[bad - 1].tolist()}; coordinates must be finite numbers in m")
+        nodes = as_rows(self.nodes, 3, "nodes", StructureError, "x, y, z in m")
         object.__setattr__(self, "nodes", frozen(nodes))
         for name in ("rods", "cables", "stiff_cables"):
             object.__setattr__(self, name, _pairs(name, getattr(self, name), nodes))
@@ -58,6 +55,11 @@ class Structure:
             raise StructureError(
                 f"node {bad + 1} is on {uses[bad]} rods; in a class-1 tensegrity each node ends exactly one rod"
             )
+        wrong = np.flatnonzero([length not in ROD_LENGTHS for length in self.rod_lengths.tolist()])
+        if len(wrong):
+            (a, b), length = self.rods[wrong[0]] + 1, self.rod_lengths[wrong[0]]
+            unit = "; coordinates are in m, these look like mm" if length > ROD_LENGTHS.high else ""
+            raise StructureError(f"rod {a}-{b} is {length:.4g} m long, outside {ROD_LENGTHS} m{unit}")
 
     @cached_property
     def rod_lengths(self) -> FloatArray:
@@ -74,10 +76,13 @@ class Structure:
         return Structure(np.asarray(nodes, dtype=float), self.rods, self.cables, self.stiff_cables)
 
 
+WHAT_A_ROW_HOLDS = "two node numbers; give a cable through several nodes as several cables"
+
+
 def _pairs(name: str, pairs: ArrayLike, nodes: FloatArray) -> IntArray:
-    array = np.array(pairs, dtype=np.int64).reshape(-1, 2) if np.size(pairs) else np.zeros((0, 2), dtype=np.int64)
+    array = as_whole_rows(pairs, 2, name, StructureError, WHAT_A_ROW_HOLDS)
     seen: set[frozenset[int]] = set()
-    for a, b in array:
+    for a, b in array.tolist():
         member = f"{name} member {a + 1}-{b + 1}"
         if not (0 <= a < len(nodes) and 0 <= b < len(nodes)):
             raise StructureError(f"{member} names a node outside 1..{len(nodes)}")

@@ -15,6 +15,7 @@ from .values import (
     as_rows,
     as_text,
     as_whole,
+    as_whole_rows,
     in_file,
     known,
     mapping,
@@ -23,8 +24,8 @@ from .values import (
 )
 
 __all__ = [
-    "Checked", "Error", "FieldRow", "Range", "Rows", "as_number", "as_numbers", "as_rows", "as_text", "as_whole",
-    "bounded", "check_fields", "choice", "decode", "describe", "fill", "in_file", "known", "mapping", "noted",
-    "number_of", "one_line", "parse_toml", "parse_yaml", "parsed", "read_fields", "read_rows", "read_text",
-    "read_toml", "read_yaml", "show",
+    "Checked", "Error", "FieldRow", "Range", "Rows", "as_number", "as_numbers", "as_rows", "as_text",
+    "as_whole", "as_whole_rows", "bounded", "check_fields", "choice", "decode", "describe", "fill", "in_file",
+    "known", "mapping", "noted", "number_of", "one_line", "parse_toml", "parse_yaml", "parsed", "read_fields",
+    "read_rows", "read_text", "read_toml", "read_yaml", "show",
 ]  # fmt: skip

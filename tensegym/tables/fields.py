@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import types
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import MISSING, Field, dataclass, field, fields, is_dataclass, replace
 from functools import cache
 from typing import Any, ClassVar, TypeVar, Union, cast, get_args, get_origin, get_type_hints
@@ -11,7 +12,7 @@ from typing import Any, ClassVar, TypeVar, Union, cast, get_args, get_origin, ge
 from tensegym.errors import InputError, TensegymError
 
 from .ranges import Range
-from .values import Error, as_number, as_text, as_whole, known, one_line, show
+from .values import Error, as_number, as_text, as_whole, in_file, known, one_line, show
 
 T = TypeVar("T")
 
@@ -85,11 +86,13 @@ def fill(kind: type[T], table: Any, where: str, error: Error, base: T | None = N
     """
     values = read_fields(kind, table, where, error, base)
     if base is not None:
-        return replace(base, **values)  # type: ignore[type-var]
+        with in_file(where) if where else nullcontext():
+            return replace(base, **values)  # type: ignore[type-var]
     for f in fields(kind):  # type: ignore[arg-type]
         if f.init and f.name not in values and f.default is MISSING and f.default_factory is MISSING:
             raise error(one_line(f"{where or kind.__name__} has no {f.name!r}; it must be given"))
-    return kind(**values)
+    with in_file(where) if where else nullcontext():
+        return kind(**values)
 
 
 def read_fields(kind: type[Any], table: Any, where: str, error: Error, base: Any = None) -> dict[str, Any]:
@@ -183,7 +186,10 @@ def _ranged(f: Field[Any], kind: type, value: Any, where: str, error: Error) -> 
     span = f"{allowed} {f.metadata['unit']}".rstrip() if allowed else ""
     noun = "whole number" if kind is int else "number" if allowed else "finite number"
     read: Callable[..., Any] = as_whole if kind is int else as_number
-    number = read(value, where, error, f"one {noun} in {span}" if allowed else f"one {noun}")
+    wanted = f"one {noun} in {span}" if allowed else f"one {noun}"
+    if isinstance(value, list | tuple) and f.metadata.get("what"):
+        wanted += f": {f.metadata['what']}"
+    number = read(value, where, error, wanted)
     if allowed is not None and number not in allowed:
         raise error(one_line(f"{where} = {show(value)} is outside {span}"))
     return value if isinstance(value, kind) and not isinstance(value, bool) else number

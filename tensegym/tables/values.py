@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from tensegym.arrays import FloatArray
+from tensegym.arrays import FloatArray, IntArray
 from tensegym.errors import TensegymError
 from tensegym.errors import one_line as one_line
 
@@ -107,16 +107,40 @@ def as_numbers(value: Any, count: int | None, where: str, error: Error) -> tuple
     return tuple(as_number(v, f"{where}[{i + 1}]", error) for i, v in enumerate(value))
 
 
-def as_rows(value: Any, width: int, where: str, error: Error) -> FloatArray:
-    """Rows of ``width`` finite numbers each -> (rows, width). Raises ``error`` naming the row, counted from 1."""
-    if not isinstance(value, list | tuple | np.ndarray):
-        raise error(one_line(f"{where} = {show(value)}; give a list of rows of {width} numbers"))
+def as_rows(value: Any, width: int, where: str, error: Error, wanted: str = "") -> FloatArray:
+    """Rows of finite numbers.
+
+    Args:
+        value: what is read; [] is no row.
+        width: numbers in every row.
+        where: names the table in messages, which count its rows from 1.
+        error: what is raised, naming the first row that is none.
+        wanted: what a row holds, for the message.
+
+    Returns:
+        (rows, width) array.
+    """
+    wanted = wanted or f"{width} numbers"
+    value = value.tolist() if isinstance(value, np.ndarray) else value
+    if not isinstance(value, list | tuple):
+        raise error(one_line(f"{where} = {show(value)}; give a list of rows of {wanted}"))
     for i, row in enumerate(value):
-        if not isinstance(row, list | tuple | np.ndarray) or len(row) != width:
+        if not isinstance(row, list | tuple) or len(row) != width:
             count = f" has {len(row)} entries" if isinstance(row, list | tuple) else ""
-            raise error(one_line(f"{where} row {i + 1} = {show(row)}{count}; every row holds {width} numbers"))
+            raise error(one_line(f"{where} row {i + 1} = {show(row)}{count}; a row holds {wanted}"))
     rows = [as_numbers(row, width, f"{where} row {i + 1}", error) for i, row in enumerate(value)]
     return np.array(rows, dtype=float).reshape(-1, width)
+
+
+def as_whole_rows(value: Any, width: int, where: str, error: Error, wanted: str = "") -> IntArray:
+    """Rows of whole numbers; arguments as of `as_rows`."""
+    rows = as_rows(value, width, where, error, wanted)
+    broken = np.argwhere((rows != np.rint(rows)) | (np.abs(rows) > 2**53))
+    if len(broken):
+        row, entry = broken[0].tolist()
+        given = show(rows[row].tolist())
+        raise error(one_line(f"{where} row {row + 1} = {given}: entry {entry + 1} is no whole number"))
+    return rows.astype(np.int64)
 
 
 def _kind(value: Any) -> str:

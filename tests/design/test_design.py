@@ -1,4 +1,5 @@
 from dataclasses import fields
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -66,6 +67,16 @@ def test_every_bounded_field_is_refused_below_its_range(kind, data):
         ({"form_finding": 1}, "true or false"),
         ({"structure": {"rod_length": -1}}, "rod_length"),
         ({"drive": 3}, "must be a table"),
+        ({"structure": {"rod_length": True}}, "structure.rod_length = True is true or false, no number"),
+        ({"structure": {"rod_length": 10**300}}, r"outside \[0.01, 30\] m"),
+        ({"elastic_cable": {"natural_length": "x"}}, "elastic_cable.natural_length = 'x' is a text, no number"),
+        ({"payload": {"natural_length": True}}, "payload.natural_length = True is true or false"),
+        ({"elastic_cable": {"two_way": 1}}, "elastic_cable.two_way = 1 must be true or false"),
+        ({"flexure": {"hinge": "door"}}, "door"),
+        ({"flexure": {"rods": "some"}}, "flexure.rods = 'some' is not one of passive, active, all"),
+        ({"preset": ["six_rod"]}, "preset = .* must be a text"),
+        ({"structure": {"nodes": [[[0.0]]]}}, "structure.nodes row 1"),
+        ({"structure": {"cables": [[1, 2], [1]]}}, r"structure.cables row 2 = \[1\] has 1 entries"),
     ],
 )
 def test_bad_designs_name_the_field(data, words):
@@ -89,3 +100,38 @@ def test_as_design_takes_presets_files_and_designs(tmp_path):
     (tmp_path / "bad.toml").write_text("a = = 1")
     with pytest.raises(DesignError, match="is not TOML"):
         as_design(str(tmp_path / "bad.toml"))
+
+
+# -- files of kinds that users have ------------------------------------------------------------------------------------
+
+CASES = Path(__file__).parent / "cases"
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("per_cable_pretension", "elastic_cable.pretension = [30.0, 30.0, 30.0, 30.0, ...] is a list of 12 where one "
+         "value stands; give one number in [0, 10000] N: tension at rest of every elastic cable"),
+        ("per_cable_stiffness", "elastic_cable.stiffness = [100.0, 100.0, 100.0, 100.0, ...] is a list of 12 where"),
+        ("clustered", "structure.cables row 1 = [1, 2, 3, 1] has 4 entries; a row holds two node numbers; give a cable "
+         "through several nodes as several cables"),
+        ("clustered3", "structure.cables row 1 = [1, 2, 3] has 3 entries; a row holds two node numbers"),
+        ("prism_mm", "rod 1-5 is 631.2 m long, outside [0.01, 30] m; coordinates are in m, these look like mm"),
+    ],
+)  # fmt: skip
+def test_what_would_be_another_robot_is_refused_by_file_and_row(name, words):
+    with pytest.raises((DesignError, StructureError)) as refused:
+        load_design(CASES / f"{name}.toml")
+    assert words in str(refused.value)
+    assert str(refused.value).startswith("design file ") and len(str(refused.value)) <= 300
+
+
+def test_a_file_from_a_spreadsheet_or_notepad_is_read():
+    assert (CASES / "bom_design.toml").read_bytes().startswith(b"\xef\xbb\xbf")
+    assert load_design(CASES / "bom_design.toml").name == "ntrt_3prism"
+
+
+def test_a_robot_with_a_drive_beside_every_cable_is_read():
+    design = load_design(CASES / "superball2.toml")
+    assert len(design.structure.stiff_cables) == len(design.structure.cables) == 24
+    assert design.active_rods.tolist() == list(range(6))
