@@ -116,7 +116,10 @@ def test_only_one_shelf_touches_the_engine_and_its_memory():
     assert {shelf(module) for module in touching} == {"bullet"}
 
 
-HOMES = {"optuna": {"search"}, "ray": {"search"}, "torch": {"control", "train"}, "tyro": {"cli", "train"}}
+HOMES = {
+    "matplotlib": {"plotting"}, "optuna": {"search"}, "ray": {"search"}, "torch": {"control", "train"},
+    "tyro": {"cli", "train"},
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("library", HOMES)
