@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from tensegym.design.design_file import as_design
 from tensegym.report import Report, table
 from tensegym.robot.modes import design_modes
+from tensegym.robot.standing import standing_verdict
 
 
 @dataclass(frozen=True)
@@ -32,4 +33,7 @@ class Modes:
             [[r["rod"], f"{r['compression_N']:.3f}", *("-" if r[k] is None else f"{r[k]:.2f}" for k in (
                 "buckling_N", "pin_stiffness_N_m_per_rad"))] for r in rods],
         )  # fmt: skip
-        return Report(text, {"modes": [{"hz": f, "count": n} for f, n in groups], "rods": rods})
+        verdict = standing_verdict(design)
+        text += f"\n\n{design.name} {verdict.text}"
+        return Report(text, {"modes": [{"hz": f, "count": n} for f, n in groups], "rods": rods,
+                             "standing": verdict.as_dict()})  # fmt: skip

@@ -16,6 +16,7 @@ from tensegym.errors import InputError, SimulationError
 from tensegym.plotting import require_matplotlib
 from tensegym.report import Report, table
 from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityRobot
+from tensegym.robot.standing import standing_verdict
 from tensegym.structure.faces import face_by_nodes
 
 from .figures import PERIOD, draw_drives, draw_storyboard, record_step
@@ -55,6 +56,9 @@ class Step:
         if self.out.exists() and not self.out.is_dir():
             raise InputError(f"--out {self.out} is a file; give a folder")
         require_matplotlib()
+        verdict = standing_verdict(design)
+        if all(face.fell for face in verdict.faces):
+            raise SimulationError(f"{design.name} {verdict.text}".replace("\n", "; "))
         with TensegrityRobot(design, dt=self.dt) as robot:
             count = len(robot.drives)
             if not all(1 <= d <= count for d in self.drives) or len(set(self.drives)) < len(self.drives):
@@ -72,9 +76,10 @@ class Step:
         travel = float(np.hypot(*tip.travel))
         data = {"from_face": names[tip.from_face], "to_face": names[tip.to_face], "tipped": tip.tipped,
                 "drives": [d + 1 for d in tip.pull.drives], "depth": tip.pull.depth, "travel_m": travel,
-                "peak_tension_N": tip.peak_tension, "out": str(self.out)}  # fmt: skip
+                "peak_tension_N": tip.peak_tension, "out": str(self.out), "standing": verdict.as_dict()}  # fmt: skip
         row = [data["from_face"], data["to_face"], pulled, tip.pull.depth, travel, tip.peak_tension]
         text = table(["from face", "to face", "drives", "depth", "travel m", "peak tension N"], [row])
+        text += f"\n{design.name} {verdict.text}"
         if not tip.tipped:
             text += "\nThe robot did not tip; try other --drives or a larger --depth."
         return Report(text, data, passed=tip.tipped)

@@ -10,6 +10,7 @@ import numpy as np
 
 from tensegym.arrays import FloatArray
 from tensegym.robot.robot import TensegrityRobot
+from tensegym.robot.standing import has_fallen
 from tensegym.structure.faces import supporting_face
 
 
@@ -85,7 +86,8 @@ def run_pull(
             watch(robot)
     dx, dy = (robot.centre_of_mass_in_world() - start)[:2]
     c, s = np.cos(angle), np.sin(angle)
-    return Tip(pull, start_face, current_face(robot), (float(c * dx + s * dy), float(c * dy - s * dx)), peak)
+    end_face = start_face if has_fallen(robot) else current_face(robot)  # lying flat is no step
+    return Tip(pull, start_face, end_face, (float(c * dx + s * dy), float(c * dy - s * dx)), peak)
 
 
 def subsets(count: int, largest: int = 3) -> Iterable[tuple[int, ...]]:

@@ -17,6 +17,7 @@ from tensegym.structure.structure import Structure
 from tensegym.tables import bounded, check_fields, one_line
 
 from .parameters import Drive, ElasticCable, Payload, Rod, RodFlexure, StiffCable
+from .shape import Shape, check_shape, shape_of
 
 if TYPE_CHECKING:
     from tensegym.flexure.models.rod_pin import RodPin
@@ -71,6 +72,7 @@ class RobotDesign:
                 f"({self.payload_natural_length:.4g} m); lower the pretension or the radius, or raise the stiffness"
             )
 
+        check_shape(self.shape, standing, self.elastic_cable.pretension)
         object.__setattr__(self, "_rod_pins", {})
         try:
             self._check_flexures()
@@ -105,6 +107,14 @@ class RobotDesign:
     def standing(self) -> Structure:
         """The structure at rest: form-found, or as given."""
         return self._standing  # type: ignore[attr-defined]
+
+    @cached_property
+    def shape(self) -> Shape:
+        """How far form finding moved the nodes, and whether the prestress holds what it made; payloads and flexures
+        left out."""
+        cable = self.elastic_cable
+        tension = cable.pretension if cable.natural_length is None else 0.0
+        return shape_of(self.structure, self.standing, tension, cable.stiffness, self.attachment_radius)
 
     @cached_property
     def active_rods(self) -> IntArray:

@@ -15,7 +15,8 @@ from tensegym.design.design import RobotDesign
 from tensegym.errors import DesignError, SimulationError
 from tensegym.physics import substep as kernel
 from tensegym.physics.drives import COMMAND
-from tensegym.physics.robot_arrays import explicit_step_limit, robot_model
+from tensegym.physics.model import Model
+from tensegym.physics.robot_arrays import explicit_step_limit, robot_model, spin_step_limit
 from tensegym.physics.terrain import FLAT, Ground, Terrain
 from tensegym.structure.faces import resting_rotation
 
@@ -51,6 +52,7 @@ class TensegrityRobot(RobotState):
         limit = explicit_step_limit(model)
         if integrator == "explicit" and dt > limit:
             raise DesignError(f"dt = {dt:g} s is over the explicit limit of {limit:.3g} s; take integrator='implicit'")
+        _check_spin(design, model, dt)
         self.implicit = integrator == "implicit" or (integrator == "auto" and dt > limit)
 
         surface = FLAT
@@ -139,7 +141,16 @@ class TensegrityRobot(RobotState):
             self._check_ground()
         fastest = np.abs(self.rates).max(initial=0.0)
         if not fastest < SPEED_BOUND:
-            raise SimulationError(f"diverged at t = {self.time:.4g} s: a cable changes length at {fastest:.3g} m/s")
+            raise SimulationError(f"diverged at t = {self.time:.4g} s: {self._fastest_cable()} changes length at "
+                                  f"{fastest:.3g} m/s; lower dt = {self.dt:g} s")  # fmt: skip
+
+    def _fastest_cable(self) -> str:
+        """Name of the cable whose length changes the most; a nan counts as that."""
+        row, structure = int(np.nan_to_num(np.abs(self.rates), nan=np.inf).argmax()), self.design.structure
+        pairs = np.concatenate([structure.cables, structure.stiff_cables])
+        if row >= len(pairs):
+            return f"the payload's cable of rod {'-'.join(map(str, structure.rods[row - len(pairs)] + 1))}"
+        return f"{'cable' if row < len(structure.cables) else 'stiff cable'} {'-'.join(map(str, pairs[row] + 1))}"
 
     def _advance(self, substeps: int) -> None:
         world, arguments = self.world, (self.model, self._ground, self._state, self._out, self.dt, self.implicit)
@@ -162,3 +173,18 @@ class TensegrityRobot(RobotState):
             foot = int(lost.argmax())
             where = "over the edge of" if np.isnan(heights[foot]) else "through"
             raise SimulationError(f"foot {foot + 1} went {where} the ground by t = {self.time:.4g} s")
+
+
+def _check_spin(design: RobotDesign, model: Model, dt: float) -> None:
+    """Raise DesignError for rods that would spin up at this time step."""
+    limit, body = spin_step_limit(model)
+    if dt < limit:
+        return
+    rod = body if body < len(design.structure.rods) else int(model.other_half[body])
+    most = 2 / dt * design.rod(rod).axial_inertia
+    name = "-".join(map(str, design.structure.rods[rod] + 1))
+    raise DesignError(
+        f"spin_damping = {design.spin_damping:g} N m s/rad and the cables spin rod {name} up at dt = {dt:g} s: with "
+        f"its axial inertia of {design.rod(rod).axial_inertia:.3g} kg m^2 the damping must be below {most:.3g} "
+        f"and dt below {limit:.3g} s; lower either, or take thicker or heavier ends"
+    )

@@ -98,8 +98,8 @@ class _RodBalance:
         jacobian = np.einsum("ci,cjde->idje", self.spans, self.spans[:, :, None, None] * stiffness[:, None])
         turn, rods = slice(self.count, 2 * self.count), np.arange(self.count)
         axes, pulls = shape[turn], forces[turn]
-        jacobian[turn] = np.einsum("ide,iejf->idjf", _cross_matrices(axes), jacobian[turn])
-        jacobian[turn][rods, :, self.count + rods] -= _cross_matrices(pulls)
+        jacobian[turn] = np.einsum("ide,iejf->idjf", cross_matrices(axes), jacobian[turn])
+        jacobian[turn][rods, :, self.count + rods] -= cross_matrices(pulls)
         jacobian[turn] /= self.half[:, :, None, None]
         unstretched = np.eye(3) - axes[:, :, None] * axes[:, None, :]
         jacobian[:, :, turn] = np.einsum("idje,jef->idjf", jacobian[:, :, turn], unstretched)
@@ -137,7 +137,7 @@ def _solve(balance: _RodBalance) -> FloatArray:
     return shape
 
 
-def _cross_matrices(vectors: FloatArray) -> FloatArray:
+def cross_matrices(vectors: FloatArray) -> FloatArray:
     """(v, 3, 3) with which a product is the cross product of each vector (v, 3) and its factor."""
     return np.cross(vectors[:, None, :], np.eye(3)).transpose(0, 2, 1)
 
