@@ -16,7 +16,6 @@ that one set serves all faces. Without the oscillators the feedback stalls where
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -32,7 +31,7 @@ from tensegym.design.symmetry import symmetries
 from tensegym.errors import DesignError
 from tensegym.robot.reading import heading_rotation
 from tensegym.robot.robot import TensegrityRobot
-from tensegym.tables import Checked, bounded
+from tensegym.tables import Checked, bounded, parse_toml
 
 if TYPE_CHECKING:
     from .policy import PolicyController
@@ -75,7 +74,7 @@ class Cpg(Checked, error=DesignError):
 def fitted_feedback() -> tuple[float, ...]:
     """Weights fitted to the commands of the shipped rolling policy (`python -m tensegym.train.distil`)."""
     text = (resources.files("tensegym.control") / "feedback.toml").read_text()
-    return tuple(value for row in tomllib.loads(text)["feedback"] for value in row)
+    return tuple(value for row in parse_toml(text, "feedback.toml", DesignError)["feedback"] for value in row)
 
 
 def feedback_text(weights: FloatArray) -> str:

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 
 from tensegym.arrays import FloatArray
 from tensegym.design.variation import parse_variation
-from tensegym.errors import DesignError
+from tensegym.errors import DesignError, InputError
 from tensegym.robot.robot import TensegrityRobot
+from tensegym.tables import mapping, read_yaml
 
 from .observation import make_observation
 
@@ -76,7 +76,8 @@ def policy_folder(name: str) -> Path:
 
 def policy_env(name: str) -> dict[str, Any]:
     """Arguments of the environment that a policy was trained in; reads no network. Raises as `policy_folder`."""
-    return dict(yaml.safe_load((policy_folder(name) / "config.yaml").read_text())["env"])
+    config = read_yaml(policy_folder(name) / "config.yaml", "training config", InputError)
+    return mapping(config.get("env"), f"env of the policy {name!r}", InputError)
 
 
 def load_policy(name: str | Path) -> Policy:

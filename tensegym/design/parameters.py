@@ -6,16 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tensegym.errors import DesignError, FlexureError
-from tensegym.tables import Checked, check_fields, choice, noted, one_line
-from tensegym.tables import bounded as bounded
+from tensegym.tables import Checked, bounded, choice, noted, one_line
 
 if TYPE_CHECKING:
     from tensegym.flexure.hinge import Hinge
-
-
-def check_ranges(group: object) -> None:
-    """Raise DesignError naming the first field of a dataclass that has the wrong type or is outside its range."""
-    check_fields(group, DesignError)
 
 
 @dataclass(frozen=True)

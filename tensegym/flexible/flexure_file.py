@@ -16,7 +16,7 @@ With ``fit`` and no ``hinge`` (a joint fitted to measured data has none) the joi
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -26,13 +26,26 @@ from tensegym.flexure.hinge import as_hinge
 from tensegym.flexure.models.joint import Joint
 from tensegym.flexure.models.joint_file import load_joint
 from tensegym.flexure.models.joint_fit import fit_joint
-from tensegym.tables import read_toml
+from tensegym.tables import Checked, choice, fill, in_file, known, noted, read_toml, show
 
 from .flexible_robot import FlexibleRobot
 from .flexure_joint import FlexureJoint
 
 MODELS = ("potential", "planar", "torsion")
-_FIELDS = {"joint", "hinge", "fit", "model", "along", "centre", "loss_time_s", "out_of_plane"}
+
+
+@dataclass(frozen=True)
+class _Section(Checked, error=FlexureError):
+    """A [[flexure]] section; what its fields mean is said above."""
+
+    joint: str
+    hinge: str | None = None
+    fit: str | None = None
+    model: str = choice(*MODELS, what="which of the fitted models")
+    along: tuple[float, float, float] | None = noted(None, "the hinge's x in the joint's frame, across the axis")
+    centre: float = noted(0.5, "where on the hinge's length the joint's axis is")
+    loss_time_s: float = noted(0.0, "structural damping over stiffness")
+    out_of_plane: tuple[float, float, float] | None = noted(None, "N/m along z, N m/rad about y and x")
 
 
 def load_robot(path: str | Path, **options: Any) -> FlexibleRobot:
@@ -43,67 +56,40 @@ def load_robot(path: str | Path, **options: Any) -> FlexibleRobot:
     """
     path = Path(path)
     data = read_toml(path, "flexure file", FlexureError)
-    _known(path, "the file", data, {"urdf", "flexure"})
-    if not isinstance(data.get("urdf"), str):
-        raise FlexureError(f"{path}: urdf = {data.get('urdf')!r}; give the name of a URDF file")
-    sections = data.get("flexure")
-    if not isinstance(sections, list) or not sections:
-        raise FlexureError(f"{path} declares no flexure; add a [[flexure]] section")
-    fitted = [_fitted(path, section) for section in sections]
+    with in_file(str(path)):
+        known(data, ("urdf", "flexure"), "the file", FlexureError)
+        if not isinstance(data.get("urdf"), str):
+            raise FlexureError(f"urdf = {show(data.get('urdf'))}; give the name of a URDF file")
+        if not isinstance(data.get("flexure"), list) or not data["flexure"]:
+            raise FlexureError("there is no flexure; add a [[flexure]] section")
+        sections = [fill(_Section, table, f"flexure {i + 1}", FlexureError) for i, table in enumerate(data["flexure"])]
+        fitted = [_fitted(path, section) for section in sections]
     urdf = path.parent / data["urdf"]
     robot = FlexibleRobot(urdf if urdf.is_file() else packaged_urdf(data["urdf"]) or urdf, **options)
     try:
-        for section, joint in zip(sections, fitted, strict=True):
-            across = section.get("out_of_plane")
-            FlexureJoint(
-                robot, section["joint"], joint, kind=section.get("model", "potential"), along=section.get("along"),
-                centre=section.get("centre", 0.5), loss_time=section.get("loss_time_s", 0.0),
-                across=None if across is None else tuple(across),
-            )  # fmt: skip
-    except FlexureError as error:
+        with in_file(str(path)):
+            for section, joint in zip(sections, fitted, strict=True):
+                FlexureJoint(robot, section.joint, joint, kind=section.model, along=section.along,
+                             centre=section.centre, loss_time=section.loss_time_s,
+                             across=section.out_of_plane)  # fmt: skip
+    except FlexureError:
         robot.close()
-        raise FlexureError(f"{path}: {error}") from error
+        raise
     return robot
 
 
-def _fitted(path: Path, section: Any) -> Joint:
+def _fitted(path: Path, section: _Section) -> Joint:
     """The joint of one section, read or fitted. Raises FlexureError."""
-    if not isinstance(section, dict):
-        raise FlexureError(f"{path}: flexure = {section!r}; give a [[flexure]] section")
-    _known(path, "a flexure", section, _FIELDS)
-    if not isinstance(section.get("joint"), str):
-        raise FlexureError(f"{path}: a flexure has no joint; name the revolute joint it takes the place of")
-    for name, count in (("along", 3), ("out_of_plane", 3), ("centre", 1), ("loss_time_s", 1)):
-        _numbers(path, section, name, count)
-    if section.get("model", "potential") not in MODELS:
-        raise FlexureError(f"{path}: model = {section['model']!r}; one of {', '.join(MODELS)}")
-    named, fit = section.get("hinge"), section.get("fit")
+    named, fit = section.hinge, section.fit
     if named is None and fit is None:
-        raise FlexureError(f"{path}: the flexure of joint {section['joint']!r} has neither hinge nor fit")
+        raise FlexureError(f"the flexure of joint {section.joint!r} has neither hinge nor fit")
     hinge = None
     if named is not None:
-        beside = path.parent / str(named)
-        hinge = as_hinge(beside if str(named).endswith(".toml") else str(named))
+        hinge = as_hinge(path.parent / named if named.endswith(".toml") else named)
     if fit is None:
         assert hinge is not None
         return fit_joint(hinge, held_out=0)
-    joint = load_joint(path.parent / str(fit))
+    joint = load_joint(path.parent / fit)
     if hinge is not None and joint.hinge != hinge:
-        raise FlexureError(f"{path}: {fit} was fitted to another hinge ({joint.source}), not to {hinge.describe()}")
+        raise FlexureError(f"{fit} was fitted to another hinge ({joint.source}), not to {hinge.describe()}")
     return joint
-
-
-def _known(path: Path, what: str, data: dict[str, Any], allowed: Sequence[str] | set[str]) -> None:
-    for key in data:
-        if key not in allowed:
-            raise FlexureError(f"{path}: {what} has no field {key!r}; its fields are {', '.join(sorted(allowed))}")
-
-
-def _numbers(path: Path, section: dict[str, Any], name: str, count: int) -> None:
-    if name not in section:
-        return
-    values = section[name] if count > 1 else [section[name]]
-    good = isinstance(values, list) and len(values) == count
-    if not good or any(isinstance(v, bool) or not isinstance(v, int | float) for v in values):
-        wanted = "a number" if count == 1 else f"{count} numbers"
-        raise FlexureError(f"{path}: {name} = {section[name]!r}; give {wanted}")

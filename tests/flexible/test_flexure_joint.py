@@ -355,13 +355,13 @@ def test_a_file_beside_the_urdf_declares_the_flexures(tmp_path):
     for old, new, words in (
         ('hinge = "leaf-spring"', 'hinge = "tfch"', "leaf.json was fitted to another hinge"),
         ('joint = "hinge"', 'joint = "elbow"', "no joint 'elbow'"),
-        ('joint = "hinge"', "", "has no joint"),
+        ('joint = "hinge"', "", "has no 'joint'"),
         ('hinge = "leaf-spring"\nfit = "leaf.json"', "", "neither hinge nor fit"),
-        ("loss_time_s = 1e-4", 'loss_time_s = "much"', "give a number"),
-        ("loss_time_s = 1e-4", "loss = 1", "no field 'loss'"),
-        ("loss_time_s = 1e-4", "out_of_plane = [1, 2, -3]", r"stand.toml: joint 'hinge': across = \(1, 2, -3\)"),
-        ("loss_time_s = 1e-4", 'model = "paper"', "model = 'paper'; one of potential, planar, torsion"),
-        ('[[flexure]]\njoint = "hinge"', "", "no field"),
+        ("loss_time_s = 1e-4", 'loss_time_s = "much"', "loss_time_s = 'much' is a text"),
+        ("loss_time_s = 1e-4", "loss = 1", "unknown field 'loss' in flexure 1"),
+        ("loss_time_s = 1e-4", "out_of_plane = [1, 2, -3]", r"stand.toml: joint 'hinge': across = \(1.0, 2.0, -3.0\)"),
+        ("loss_time_s = 1e-4", 'model = "paper"', "model = 'paper' is not one of potential, planar, torsion"),
+        ('[[flexure]]\njoint = "hinge"', "", "unknown field"),
     ):
         path.write_text(text.replace(old, new))
         with pytest.raises(FlexureError, match=words):

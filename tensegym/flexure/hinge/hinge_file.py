@@ -21,18 +21,20 @@ or a preset with other dimensions: preset = "x-hinge", thickness_mm = 1.0.
 from __future__ import annotations
 
 import math
-import tomllib
 from pathlib import Path
 from typing import Any
 
+import tomli_w
+
 from tensegym.errors import FlexureError
+from tensegym.tables import as_number, as_numbers, as_text, in_file, known, mapping, one_line, read_toml, show
 
 from .hinge import GROUND, TIP, Hinge, Leaf, Material
 from .presets import MM, preset
 
-_MATERIAL = {"youngs_modulus_GPa", "poisson_ratio", "modulus", "factor"}
-_LEAF = {"from", "from_mm", "to", "to_mm", "width_mm", "thickness_mm"}
-_HINGE = {"name", "length_mm", "arm_mm", "max_angle_deg", "bodies", "material", "leaf"}
+_MATERIAL = ("youngs_modulus_GPa", "poisson_ratio", "modulus", "factor")
+_LEAF = ("from", "from_mm", "to", "to_mm", "width_mm", "thickness_mm")
+_HINGE = ("name", "length_mm", "arm_mm", "max_angle_deg", "bodies", "material", "leaf")
 
 
 def as_hinge(value: str | Path | dict[str, Any] | Hinge) -> Hinge:
@@ -46,44 +48,40 @@ def as_hinge(value: str | Path | dict[str, Any] | Hinge) -> Hinge:
         return hinge_from_dict(value)
     if not str(value).endswith(".toml"):
         return preset(str(value))
-    path = Path(value)
-    if not path.is_file():
-        raise FileNotFoundError(f"no hinge file {path}")
-    try:
-        data = tomllib.loads(path.read_text())
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise FlexureError(f"{path} is not TOML: {error}") from error
-    return hinge_from_dict(data)
+    data = read_toml(value, "hinge file", FlexureError)
+    with in_file(f"hinge file {value}"):
+        return hinge_from_dict(data)
 
 
 def hinge_from_dict(data: dict[str, Any]) -> Hinge:
     """Build a hinge from nested plain types. Raises FlexureError."""
-    data = dict(data)
+    data = dict(mapping(data, "hinge", FlexureError))
     material = _material(data.pop("material", {}))
     if "preset" in data:
-        name = _text(data.pop("preset"), "preset")
+        name = as_text(data.pop("preset"), "preset", FlexureError)
         dimensions = {}
         for key, value in data.items():  # lengths carry _mm, the crossing fraction has no unit
-            scale = MM if key.endswith("_mm") else 1.0
-            dimensions[key.removesuffix("_mm")] = scale * _number(value, key)
+            scale = MM if str(key).endswith("_mm") else 1.0
+            dimensions[str(key).removesuffix("_mm")] = scale * as_number(value, show(key), FlexureError)
             if scale == 1.0 and key != "crossing":
-                raise FlexureError(f"{key!r} beside a preset has no unit; give lengths such as thickness_mm")
+                raise FlexureError(f"{show(key)} beside a preset has no unit; give lengths such as thickness_mm")
         return preset(name, **dimensions).with_material(material)
-    _known("the hinge", data, _HINGE)
+    known(data, _HINGE, "the hinge", FlexureError)
     if not isinstance(data.get("leaf"), list) or not data["leaf"]:
         raise FlexureError('the hinge has no leaf; add a [[leaf]] section, or start from preset = "x-hinge"')
-    leaves = tuple(_leaf(item) for item in data["leaf"])
+    leaves = tuple(_leaf(item, i + 1) for i, item in enumerate(data["leaf"]))
     named = [GROUND, *(b for leaf in leaves for b in (leaf.start_body, leaf.end_body)), TIP]
     bodies = data.get("bodies", list(dict.fromkeys(named)))
     if not (isinstance(bodies, list) and all(isinstance(b, str) for b in bodies)):
-        raise FlexureError(f"bodies = {bodies!r}; give a list of names")
+        raise FlexureError(one_line(f"bodies = {show(bodies)}; give a list of names"))
     extra = {}
     if "arm_mm" in data:
-        extra["arm"] = MM * _number(data["arm_mm"], "arm_mm")
+        extra["arm"] = MM * as_number(data["arm_mm"], "arm_mm", FlexureError)
     if "max_angle_deg" in data:
-        extra["max_angle"] = math.radians(_number(data["max_angle_deg"], "max_angle_deg"))
-    return Hinge(_text(data.get("name", "hinge"), "name"), leaves, MM * _number(data.get("length_mm"), "length_mm"),
-                 tuple(bodies), material, **extra)  # fmt: skip
+        extra["max_angle"] = math.radians(as_number(data["max_angle_deg"], "max_angle_deg", FlexureError))
+    length = MM * as_number(data.get("length_mm"), "length_mm", FlexureError)
+    return Hinge(as_text(data.get("name", "hinge"), "name", FlexureError), leaves, length, tuple(bodies), material,
+                 **extra)  # fmt: skip
 
 
 def hinge_to_dict(hinge: Hinge) -> dict[str, Any]:
@@ -111,69 +109,35 @@ def hinge_to_dict(hinge: Hinge) -> dict[str, Any]:
 
 def hinge_to_toml(hinge: Hinge) -> str:
     """TOML text that as_hinge reads back."""
-    data = hinge_to_dict(hinge)
-    material, leaves = data.pop("material"), data.pop("leaf")
-    sections = [("", data), ("[material]", material), *(("[[leaf]]", leaf) for leaf in leaves)]
-    return "\n".join("\n".join([head, *(f"{k} = {_toml(v)}" for k, v in body.items())]).lstrip() + "\n"
-                     for head, body in sections)  # fmt: skip
-
-
-def _toml(value: Any) -> str:
-    if isinstance(value, str):
-        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    if isinstance(value, list):
-        return "[" + ", ".join(map(_toml, value)) + "]"
-    return repr(float(value))
+    return tomli_w.dumps(hinge_to_dict(hinge))
 
 
 def _material(data: Any) -> Material:
-    if not isinstance(data, dict):
-        raise FlexureError(f"material = {data!r}; give a [material] section")
-    _known("material", data, _MATERIAL)
+    known(data, _MATERIAL, "material", FlexureError)
     fields: dict[str, Any] = {}
     if "youngs_modulus_GPa" in data:
-        fields["youngs_modulus"] = 1e9 * _number(data["youngs_modulus_GPa"], "youngs_modulus_GPa")
+        fields["youngs_modulus"] = 1e9 * as_number(data["youngs_modulus_GPa"], "youngs_modulus_GPa", FlexureError)
     for key in ("poisson_ratio", "factor"):
         if key in data:
-            fields[key] = _number(data[key], key)
+            fields[key] = as_number(data[key], key, FlexureError)
     if "modulus" in data:
-        fields["modulus"] = _text(data["modulus"], "modulus")
+        fields["modulus"] = as_text(data["modulus"], "modulus", FlexureError)
     return Material(**fields)
 
 
-def _leaf(data: Any) -> Leaf:
-    if not isinstance(data, dict):
-        raise FlexureError(f"leaf = {data!r}; give a [[leaf]] section")
-    _known("a leaf", data, _LEAF)
-    missing = _LEAF - data.keys()
+def _leaf(data: Any, number: int) -> Leaf:
+    where = f"leaf {number}"
+    missing = set(_LEAF) - known(data, _LEAF, where, FlexureError).keys()
     if missing:
-        raise FlexureError(f"a leaf has no {sorted(missing)[0]!r}; it needs {', '.join(sorted(_LEAF))}")
+        raise FlexureError(one_line(f"{where} has no {min(missing)!r}; it needs {', '.join(sorted(_LEAF))}"))
+    bodies = [as_text(data[key], f"{where}: {key}", FlexureError) for key in ("from", "to")]
     points = []
     for key in ("from_mm", "to_mm"):
-        if not (isinstance(data[key], list) and len(data[key]) == 2):
-            raise FlexureError(f"leaf {key} = {data[key]!r}; give [x, y] in mm")
-        points.append((MM * _number(data[key][0], key), MM * _number(data[key][1], key)))
-    return Leaf(_text(data["from"], "from"), points[0], _text(data["to"], "to"), points[1],
-                MM * _number(data["width_mm"], "width_mm"),
-                MM * _number(data["thickness_mm"], "thickness_mm"))  # fmt: skip
-
-
-def _known(what: str, data: dict[str, Any], allowed: set[str]) -> None:
-    for key in data:
-        if key not in allowed:
-            raise FlexureError(f"{what} has no field {key!r}; its fields are {', '.join(sorted(allowed))}")
-
-
-def _number(value: Any, name: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise FlexureError(f"{name} = {value!r} is no finite number")
-    return float(value)
-
-
-def _text(value: Any, name: str) -> str:
-    if not isinstance(value, str):
-        raise FlexureError(f"{name} = {value!r}; give a text")
-    return value
+        x, y = as_numbers(data[key], 2, f"{where}: {key}", FlexureError)
+        points.append((MM * x, MM * y))
+    width, thickness = (MM * as_number(data[key], f"{where}: {key}", FlexureError)
+                        for key in ("width_mm", "thickness_mm"))  # fmt: skip
+    return Leaf(bodies[0], points[0], bodies[1], points[1], width, thickness)
 
 
 def _mm(value: float) -> float:

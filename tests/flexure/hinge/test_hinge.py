@@ -101,13 +101,13 @@ GOOD = {"length_mm": 40.0, "leaf": [{"from": "ground", "from_mm": [0, 0], "to": 
 
 @pytest.mark.parametrize(("change", "words"), [
     ({"leaf": []}, "no leaf"),
-    ({"length_mm": "long"}, "length_mm = 'long' is no finite number"),
-    ({"colour": 1}, "no field 'colour'"),
-    ({"leaf": [{"from": "ground"}]}, "a leaf has no"),
+    ({"length_mm": "long"}, "length_mm = 'long' is a text, no number"),
+    ({"colour": 1}, "unknown field 'colour' in the hinge"),
+    ({"leaf": [{"from": "ground"}]}, "leaf 1 has no"),
     ({"leaf": [GOOD["leaf"][0] | {"from_mm": [0]}]}, "from_mm"),
     ({"leaf": [GOOD["leaf"][0] | {"thickness_mm": 0}]}, "thickness = 0 m"),
     ({"material": {"poisson_ratio": 0.6}}, "poisson_ratio = 0.6"),
-    ({"material": {"density": 1}}, "material has no field 'density'"),
+    ({"material": {"density": 1}}, "unknown field 'density' in material"),
     ({"bodies": ["ground", "tip", "loose"]}, "'loose' is disconnected"),
     ({"max_angle_deg": 100}, "max_angle"),
     ({"name": 3}, "name = 3"),
