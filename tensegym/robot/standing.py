@@ -52,8 +52,10 @@ class Verdict(NamedTuple):
     faces: list[FaceVerdict]
     """Those that the centre of mass is above, which a rigid robot would rest on."""
     least_pretension: float | None
-    """That the robot stands at on all of them [N], within 10 %, or lower than half of the present one; None where none
-    does, or none is looked for."""
+    """That the robot stands at on all of them [N], within 10 %, or the lowest tried, a quarter of the present one; None
+    where none of those tried does, or none is looked for."""
+    pretension: float
+    """The design's own [N]."""
     length: float
     """Longest rod [m]."""
 
@@ -77,10 +79,13 @@ class Verdict(NamedTuple):
             line = f"falls flat under its weight on {len(fell)} of {len(self.faces)} faces ({fell[0].name} first)"
         else:
             line = f"{self.kind} on every face, its nodes displaced by at most {sag:.3g} mm under its weight"
-        if self.least_pretension is not None:
-            line += f"; it stands from a pretension of {self.least_pretension:.3g} N on"
+        least = self.least_pretension
+        if least is not None and least > 1.001 * WIDEST * self.pretension:
+            line += f"; it stands from a pretension of {least:.3g} N on"
+        elif least is not None:
+            line += f"; so it does at a pretension of {least:.3g} N, the lowest tried"
         elif fell:
-            line += "; no pretension that the cables' stiffness allows stands"
+            line += "; with none of the pretensions tried does it stand on all: other force densities or heights may"
         if self.shape.moved > 1e-3 * self.length:
             line += f"\nform finding moved the given nodes by up to {self.shape.moved:.3g} m"
         return line
@@ -119,7 +124,7 @@ def standing_verdict(design: RobotDesign) -> Verdict:
     """
     with _robot(design) as robot:
         faces = {face: _settle(robot, face) for face in resting_faces(robot)}
-    verdict = Verdict(design.shape, list(faces.values()), None, design.length)
+    verdict = Verdict(design.shape, list(faces.values()), None, design.elastic_cable.pretension, design.length)
     worst_first = sorted(faces, key=lambda face: faces[face] is not verdict.worst)
     if design.elastic_cable.natural_length is not None or design.gravity == 0:
         return verdict
