@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import asdict, dataclass, field
 from importlib import resources
 from typing import Any
@@ -43,6 +44,8 @@ class TrainConfig(Checked, error=InputError):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if not re.fullmatch(r"tensegym/\w+-v\d+", self.env_id):  # "module:id" would import the module
+            raise InputError(one_line(f"TrainConfig.env_id = {show(self.env_id)} must be as tensegym/NAME-v0"))
         if not self.hidden:
             raise InputError("TrainConfig.hidden = [] must hold one width or more")
         if self.batch_size > self.rollout_steps:

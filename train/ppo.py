@@ -24,7 +24,7 @@ from tensegym.envs import CONTROL_PERIOD
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
 
-from .checkpoint import checkpoint_folder, write_checkpoint
+from .checkpoint import checkpoint_folder, read_training, write_checkpoint
 from .config import TrainConfig
 from .start_policy import begin_from
 from .symmetric_policy import SymmetricPolicy, symmetry_arguments
@@ -60,16 +60,14 @@ def train(config: TrainConfig, seed: int, out: Path, state: dict[str, Any]) -> i
     workers = make_vec_env(config)
     monitored = VecMonitor(workers)
     try:
+        set_random_seed(seed)
+        env = VecNormalize(monitored, gamma=config.gamma, clip_obs=10.0)
+        model = _new_model(config, env, seed)
         if state["steps"]:
-            last = checkpoint_folder(out, state["steps"])
-            env = VecNormalize.load(str(last / "vecnormalize.pkl"), monitored)
-            model = PPO.load(last / "model.zip", env=env, device="cpu")
-        else:
-            set_random_seed(seed)
-            env = VecNormalize(monitored, gamma=config.gamma, clip_obs=10.0)
-            model = _new_model(config, env, seed)
-            if config.start is not None:
-                begin_from(config.start, model, env)
+            read_training(model, env, checkpoint_folder(out, state["steps"]), state["updates"])
+            model.num_timesteps = state["steps"]
+        elif config.start is not None:
+            begin_from(config.start, model, env)
         model.set_logger(configure(str(out / "tensorboard"), ["tensorboard", "csv"]))
         chunk_steps = config.chunk * config.rollout_steps
         with tqdm(total=config.steps, initial=state["steps"], unit="step", desc=out.name, file=sys.stderr) as bar:

@@ -1,20 +1,23 @@
 """Put a finished run among the shipped policies: `python -m tensegym.train.ship --run runs/rolling-s0 --name rolling`.
 
-Keeps what evaluation needs and what made it (config, seed, versions, curve); leaves out the optimiser's moments, two
-thirds of the file.
+Keeps what evaluation needs and what made it (config, seed, versions, curve); leaves out the optimiser's moments.
 """
 
 from __future__ import annotations
 
-import json
+import re
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
 from tensegym.control.policy import shipped
+from tensegym.control.policy_file import SETTINGS, WEIGHTS
 from tensegym.errors import InputError
+from tensegym.files import read_json, replace_path, write_text
 
-FILES = ("config.yaml", "versions.json", "curve.csv", "curve.png", "vecnormalize.pkl")
+from .config import load_config
+
+FILES = ("config.yaml", "versions.json", "curve.csv", "curve.png", WEIGHTS, SETTINGS)
 
 
 @dataclass(frozen=True)
@@ -27,31 +30,29 @@ class Ship:
     """Name to ship it under, for `tensegym roll --policy NAME`."""
 
     def __call__(self) -> Path:
-        """Returns the folder written. Raises InputError for a run that is not finished."""
-        from stable_baselines3 import PPO
+        """Returns the folder written. Raises InputError for a run that is not finished, or a name that is none."""
+        if not re.fullmatch(r"[a-z][a-z0-9_]*", self.name):
+            raise InputError(f"name = {self.name!r} must be small letters, digits and _, beginning with a letter")
+        out = shipped(self.name)
+        if out.exists() and not (out / WEIGHTS).is_file():
+            raise InputError(f"name = {self.name!r} is taken by {out}, which is no policy; take another")
 
-        from .config import load_config
-
-        missing = [f for f in (*FILES, "model.zip", "state.json") if not (self.run / f).is_file()]
+        missing = [f for f in (*FILES, "state.json") if not (self.run / f).is_file()]
         if missing:
             raise InputError(f"{self.run} is no finished run: {missing[0]} is missing; resume it with `tensegym train`")
-        state = json.loads((self.run / "state.json").read_text())
+        state = read_json(self.run / "state.json")
         config = load_config(str(self.run / "config.yaml"))
         if state["steps"] < config.steps:
             raise InputError(f"{self.run} stands at {state['steps']} of {config.steps} steps; resume it first")
-        out = shipped(self.name)
-        shutil.rmtree(out, ignore_errors=True)
-        out.mkdir(parents=True)
-        for name in FILES:
-            shutil.copy2(self.run / name, out / name)
-        model = PPO.load(self.run / "model.zip", device="cpu")
-        model.policy.optimizer = type(model.policy.optimizer)(model.policy.parameters(), lr=model.learning_rate)
-        model.save(out / "model.zip")
-        commit = json.loads((self.run / "versions.json").read_text())["commit"]
+        commit = read_json(self.run / "versions.json")["commit"]
         lines = [f"tensegym train --config {self.name} --seed {state['seed']}"]
         lines += [f"tensegym train --resume --out {self.run} --steps {end}" for end in state.get("stages", [])[1:]]
         done = f"# at commit {commit}; {state['steps']} steps in {state['seconds'] / 3600:.2f} h\n"
-        (out / "COMMAND").write_text("\n".join([*lines, done]))
+        with replace_path(out) as fresh:
+            fresh.mkdir(parents=True)
+            for name in FILES:
+                shutil.copy2(self.run / name, fresh / name)
+            write_text(fresh / "COMMAND", "\n".join([*lines, done]))
         return out
 
 

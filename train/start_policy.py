@@ -5,15 +5,17 @@ What the new observation has behind the old one's end begins with weights of zer
 
 from __future__ import annotations
 
-import pickle
 from typing import Any
 
+import torch
 from stable_baselines3 import PPO
 from stable_baselines3.common.vec_env import VecNormalize
 
 from tensegym.control.policy import policy_env, policy_folder
+from tensegym.control.policy_file import read_policy
 from tensegym.errors import InputError
 
+from .checkpoint import put_statistics
 from .config import TrainConfig
 
 
@@ -21,9 +23,8 @@ def check_start(config: TrainConfig, observed: Any, driven: Any) -> None:
     """Refuse a start that an environment of these shapes cannot go on from. Raises InputError, FileNotFoundError."""
     assert config.start is not None
     kinds = policy_env(config.start).get("observation", "full"), config.env.get("observation", "full")
-    model = PPO.load(policy_folder(config.start) / "model.zip", device="cpu")
-    own = model.observation_space.shape, model.action_space.shape
-    hidden = list(model.policy_kwargs["hidden"])
+    saved = read_policy(policy_folder(config.start))
+    own, hidden = (saved.observation_bounds.shape[1:], saved.action_bounds.shape[1:]), saved.hidden
     if kinds[0] != kinds[1] or own[0] > observed or own[1] != driven or hidden != list(config.hidden):
         raise InputError(
             f"training config: start = {config.start!r} has observation {kinds[0]} {own[0]}, actions {own[1]} and "
@@ -34,17 +35,14 @@ def check_start(config: TrainConfig, observed: Any, driven: Any) -> None:
 
 def begin_from(start: str, model: PPO, env: VecNormalize) -> None:
     """Give a fresh model the networks of a policy, and its environments that policy's running statistics."""
-    old = PPO.load(policy_folder(start) / "model.zip", device="cpu").policy.state_dict()
+    saved = read_policy(policy_folder(start))
     new = model.policy.state_dict()
     for name, value in new.items():
         if name.endswith((".index", ".sign", ".back")):  # how the robot's rotations permute the new observation
             continue
-        known = old[name]
+        known = torch.from_numpy(saved.weights[name])
         value.zero_()
         value[tuple(slice(n) for n in known.shape)] = known
     model.policy.load_state_dict(new)
-    with (policy_folder(start) / "vecnormalize.pkl").open("rb") as file:
-        statistics = pickle.load(file)
-    size = len(statistics.obs_rms.mean)
-    env.obs_rms.mean[:size], env.obs_rms.var[:size] = statistics.obs_rms.mean, statistics.obs_rms.var
-    env.obs_rms.count, env.ret_rms = statistics.obs_rms.count, statistics.ret_rms
+    put_statistics(env.obs_rms, saved.observations)
+    put_statistics(env.ret_rms, saved.returns)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import pickle
+import os
 from functools import lru_cache
 from importlib import resources
 from pathlib import Path
@@ -15,11 +15,12 @@ from tensegym.arrays import FloatArray
 from tensegym.design.variation import parse_variation
 from tensegym.errors import DesignError, InputError
 from tensegym.robot.robot import TensegrityRobot
-from tensegym.tables import mapping, read_yaml
+from tensegym.tables import mapping, one_line, read_yaml, show
 
 from .observation import make_observation
+from .policy_file import SETTINGS, WEIGHTS, SavedPolicy, read_policy
 
-FILES = ("model.zip", "vecnormalize.pkl", "config.yaml")
+FILES = (WEIGHTS, SETTINGS, "config.yaml")
 CONTROL_PERIOD = 0.4  # s, where a policy's environment says nothing else
 
 
@@ -33,21 +34,27 @@ class Policy:
         driven: length of an action.
     """
 
-    def __init__(self, name: str, folder: Path, env: dict[str, Any]) -> None:
+    def __init__(self, name: str, saved: SavedPolicy, env: dict[str, Any]) -> None:
         import torch
-        from stable_baselines3 import PPO
 
         torch.set_num_threads(1)
-        self.name, self.env = name, env
-        self._model = PPO.load(folder / "model.zip", device="cpu")
-        with (folder / "vecnormalize.pkl").open("rb") as file:
-            self._normalise = pickle.load(file)
-        self._normalise.training, self._normalise.norm_reward = False, False
-        self.observed, self.driven = self._model.observation_space.shape[0], self._model.action_space.shape[0]
+        self.name, self.env, self._saved = name, env, saved
+        self.observed, self.driven = saved.observation_bounds.shape[1], saved.action_bounds.shape[1]
+        self._layers = [tuple(map(torch.from_numpy, layer)) for layer in saved.layers("actor")]
+        self._index, self._sign, self._back = (
+            torch.from_numpy(saved.weights[f"mlp_extractor.{part}"]) for part in ("index", "sign", "back")
+        )
 
     def __call__(self, observation: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Action (driven,) of an observation (observed,)."""
-        return self._model.predict(self._normalise.normalize_obs(observation[None]), deterministic=True)[0][0]
+        """Action (driven,) of an observation (observed,): the mean over the symmetries, turned back."""
+        import torch
+
+        with torch.no_grad():
+            images = torch.from_numpy(self._saved.normalised(observation)[None])[:, self._index] * self._sign
+            for number, (weight, bias) in enumerate(self._layers):
+                images = torch.nn.functional.linear(torch.tanh(images) if number else images, weight, bias)
+            mean = images.gather(2, self._back.expand(1, -1, -1)).mean(dim=1)
+        return np.clip(mean.numpy()[0], *self._saved.action_bounds)
 
 
 def shipped(name: str) -> Path:
@@ -60,36 +67,57 @@ def shipped_names() -> list[str]:
     return sorted(folder.name for folder in shipped("").iterdir() if (folder / FILES[0]).is_file())
 
 
-def policy_folder(name: str) -> Path:
-    """Folder of a shipped policy by its name, or of a run by its path.
+def policy_folder(name: str | Path) -> Path:
+    """Folder of a shipped policy by its name, or of a run by its path, which has a separator in it if it is text.
 
     Raises:
         FileNotFoundError: there is no policy.
+        InputError: there is one that could run code.
     """
-    folder = shipped(name) if name in shipped_names() else Path(name)
+    names = ", ".join(shipped_names())
+    if isinstance(name, str) and not {"/", os.sep} & set(name):
+        if name not in shipped_names():
+            raise FileNotFoundError(one_line(f"no policy {show(name)}: shipped are {names}; a run's folder is given as "
+                                             f"a path, ./{name}"))  # fmt: skip
+        return shipped(name)
+    folder = Path(name)
     for file in FILES:
-        if not (folder / file).is_file():
-            raise FileNotFoundError(f"no policy in {name!r}: {file} is missing; give a run's folder or one of "
-                                    f"{', '.join(shipped_names())}")  # fmt: skip
+        if (folder / file).is_file():
+            continue
+        if (folder / "model.zip").is_file():
+            raise InputError(one_line(
+                f"{folder} holds a policy as Stable-Baselines3 writes it, which can run code when it is read: if you "
+                f"trust its maker, convert it by `python -m tensegym.train.convert --folder {folder} --trust`"
+            ))  # fmt: skip
+        raise FileNotFoundError(one_line(f"no policy in {show(str(name))}: {file} is missing; give a run's folder, or "
+                                         f"one of {names}"))  # fmt: skip
     return folder
 
 
-def policy_env(name: str) -> dict[str, Any]:
-    """Arguments of the environment that a policy was trained in; reads no network. Raises as `policy_folder`."""
+def policy_env(name: str | Path) -> dict[str, Any]:
+    """Arguments of the environment that a policy was trained in; reads no network.
+
+    Raises:
+        FileNotFoundError, InputError: as `policy_folder`, or the policy's config.yaml is none.
+    """
     config = read_yaml(policy_folder(name) / "config.yaml", "training config", InputError)
-    return mapping(config.get("env"), f"env of the policy {name!r}", InputError)
+    return mapping(config.get("env"), f"env of the policy {str(name)!r}", InputError)
 
 
 def load_policy(name: str | Path) -> Policy:
-    """A shipped policy by its name, or one from a run's folder. Raises as `policy_folder`."""
-    folder = policy_folder(str(name))
-    return _read_once(str(name), folder, (folder / FILES[0]).stat().st_mtime_ns)
+    """A shipped policy by its name, or one from a run's folder.
+
+    Raises:
+        FileNotFoundError, InputError: as `policy_folder`, or the policy's files are none.
+    """
+    folder = policy_folder(name)
+    return _read_once(str(name), folder, (folder / WEIGHTS).stat().st_mtime_ns)
 
 
 @lru_cache(maxsize=16)
 def _read_once(name: str, folder: Path, changed: int) -> Policy:
     """One policy for all episodes of a process, until its file is changed."""
-    return Policy(name, folder, policy_env(name))
+    return Policy(name, read_policy(folder), policy_env(folder))
 
 
 class PolicyController:

@@ -30,6 +30,7 @@ from tensegym.tables import as_text, bounded, fill, noted, show
 from .controller import Controller
 from .cpg import Cpg, CpgController
 from .policy import PolicyController, policy_folder, shipped
+from .policy_file import read_policy
 from .random_commands import RandomCommands
 from .tipping import Tip
 from .walker import Walker, WalkerSettings, load_table
@@ -57,11 +58,11 @@ def make_controller(table: Mapping[str, Any]) -> Controller:
 
 
 def with_defaults(table: Mapping[str, Any]) -> dict[str, Any]:
-    """The table with every default in it. Raises as `make_controller`, but reads no network and makes no table."""
+    """The table with every default in it. Raises as `make_controller`, but makes no network and no table of tips."""
     kind, parameters = _parsed(table)
     policy = {"policy": table.get("policy", "")} if kind == "cpg" else {}
     if named := policy.get("policy") or getattr(parameters, "policy", ""):
-        policy_folder(named)
+        read_policy(policy_folder(named))
     besides = {name: table[name] for name in ("tips", "period") if name in table and kind == "walker"}
     return {"kind": kind, **policy, **besides, **asdict(parameters)}
 

@@ -3,7 +3,6 @@
 import csv
 import json
 import os
-import pickle
 import shutil
 import signal
 import subprocess
@@ -15,11 +14,12 @@ import numpy as np
 import pytest
 import torch
 import yaml
-from stable_baselines3 import PPO
 
 from tensegym.control.policy import load_policy
+from tensegym.control.policy_file import read_arrays, read_policy
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
+from tensegym.files import read_json
 from tensegym.train.ship import Ship
 from tests.conftest import assert_refused
 
@@ -28,18 +28,13 @@ STEPS = 20  # a chunk of the tiny training
 
 def learned(run):
     """Everything a training's next step depends on: weights, optimiser, running statistics, curve without clocks."""
-    model = PPO.load(run / "model.zip", device="cpu")
-    with (run / "vecnormalize.pkl").open("rb") as file:
-        normal = pickle.load(file)
+    saved = read_policy(run)
+    newest = max((run / "checkpoints").iterdir())
     with (run / "curve.csv").open() as file:
         curve = [{k: v for k, v in row.items() if k != "hours"} for row in csv.DictReader(file)]
-    weights = {name: value.numpy() for name, value in model.policy.state_dict().items()}
-    moments = [
-        value.numpy()
-        for state in model.policy.optimizer.state_dict()["state"].values()
-        for value in state.values()
-    ]
-    return weights, moments, [normal.obs_rms.mean, normal.obs_rms.var, normal.ret_rms.mean, normal.ret_rms.var], curve
+    moments = [array for _, array in sorted(read_arrays(newest / "optimiser.npz").items())]
+    statistics = [value for each in (saved.observations, saved.returns) for value in vars(each).values()]
+    return saved.weights, moments, statistics, curve
 
 
 def assert_same(one, two):
@@ -65,17 +60,15 @@ def test_a_run_leaves_model_statistics_curve_config_and_versions(tiny_run):
     assert {p.name for p in (tiny_run / "checkpoints").iterdir()} == {f"{n * STEPS:09d}" for n in (1, 2, 3)}
     assert (tiny_run / "curve.png").read_bytes().startswith(b"\x89PNG")
     assert list((tiny_run / "tensorboard").glob("events.*"))
-    assert not list(tiny_run.glob("*.tmp"))
+    assert not list(tiny_run.rglob(".tensegym-*"))
 
 
 def test_weights_and_statistics_move_with_every_chunk(tiny_run):
     seen = []
     for folder in sorted((tiny_run / "checkpoints").iterdir()):
-        model = PPO.load(folder / "model.zip", device="cpu")
-        assert model.num_timesteps == int(folder.name)
-        with (folder / "vecnormalize.pkl").open("rb") as file:
-            count = pickle.load(file).obs_rms.count
-        seen.append((model.policy.mlp_extractor.actor[0].weight.detach().numpy().copy(), count))
+        saved = read_policy(folder)
+        assert read_json(folder / "state.json")["steps"] == int(folder.name)
+        seen.append((saved.layers("actor")[0][0], saved.observations.count))
     assert all(np.abs(a[0] - b[0]).max() > 0 and b[1] > a[1] for a, b in pairwise(seen))
 
 
@@ -104,9 +97,9 @@ def test_a_kill_amid_writing_is_resumed_from_the_last_whole_checkpoint(tiny_run,
     out = tmp_path / "torn"
     shutil.copytree(tiny_run, out)
     second, third = (out / "checkpoints" / f"{n * STEPS:09d}" for n in (2, 3))
-    third.rename(out / "checkpoint.tmp")
-    (out / "checkpoint.tmp" / "state.json").unlink()
-    (out / "model.zip").write_bytes((out / "model.zip").read_bytes()[:100])
+    third.rename(half := out / "checkpoints" / f".tensegym-1-{third.name}")
+    (half / "state.json").unlink()
+    (out / "weights.npz").write_bytes((out / "weights.npz").read_bytes()[:100])
     shutil.copy(second / "state.json", out / "state.json")
 
     status, output, _ = cli("train", "--resume", "--out", out, "--json")
@@ -156,8 +149,8 @@ def test_an_unfinished_run_is_not_shipped(tiny_run, tmp_path):
 def test_another_seed_learns_something_else(tiny_run, tiny_config, tmp_path, cli):
     out = tmp_path / "other"
     assert cli("train", "--config", tiny_config, "--out", out, "--seed", "8", "--steps", STEPS)[0] == 0
-    first = PPO.load(tiny_run / "checkpoints" / f"{STEPS:09d}" / "model.zip", device="cpu").policy.state_dict()
-    other = PPO.load(out / "model.zip", device="cpu").policy.state_dict()
+    first = read_policy(tiny_run / "checkpoints" / f"{STEPS:09d}").weights
+    other = read_policy(out).weights
     assert any((first[name] != other[name]).any() for name in first)
     assert yaml.safe_load((out / "config.yaml").read_text())["steps"] == STEPS
 
@@ -265,3 +258,9 @@ def test_a_start_there_is_not_is_refused(tmp_path, tiny_config, cli):
     config = started(tmp_path, tiny_config, tmp_path / "nowhere")
     assert_refused(cli("train", "--config", config, "--out", tmp_path / "run"), "nowhere")
     assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize("name", ["../rolling", "a/b", "/tmp", "", ".", "Rolling", "walker"])
+def test_ship_replaces_nothing_but_a_policy(name, tiny_run):
+    with pytest.raises(InputError, match=r"name = '.*' (must be|is taken)"):
+        Ship(tiny_run, name)()

@@ -178,7 +178,7 @@ def test_a_policy_for_another_observation_is_refused(tiny_run, tmp_path, cli):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--policy", "walking"], ["no policy in 'walking'", "model.zip"]),
+        (["--policy", "walking"], ["no policy 'walking'", "shipped are", "./walking"]),
         (["--episodes", "0"], ["episodes = 0"]),
         (["--seconds", "0.5"], ["seconds = 0.5", "[1, 3600]"]),
         (["--seconds", "nan"], ["seconds = nan"]),
