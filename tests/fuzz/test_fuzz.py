@@ -5,10 +5,8 @@ from hypothesis import HealthCheck, given, settings
 
 from tests.fuzz.judge import NAMES, trial
 
-PENDING = {"design", "task"}  # whose readers are being mended
 
-
-@pytest.mark.parametrize("name", [name for name in NAMES if name not in PENDING])
+@pytest.mark.parametrize("name", NAMES)
 def test_damaged_input_is_accepted_or_refused(name, tmp_path):
     inputs, judge = trial(name, tmp_path)
 
