@@ -114,6 +114,14 @@ def test_a_description_lists_every_field():
     assert rows[1].default == "none" and rows[4].range == "steel, brass"
 
 
+def test_every_field_of_a_robot_has_a_meaning():
+    from tensegym.design.design import RobotDesign
+    from tensegym.design.parameters import Drive, ElasticCable, Payload, Rod, RodFlexure, StiffCable
+
+    for kind in (RobotDesign, Rod, ElasticCable, StiffCable, Drive, Payload, RodFlexure):
+        assert [r.field for r in tables.describe(kind) if not r.meaning and r.field != "structure"] == []
+
+
 # -- ranges ------------------------------------------------------------------------------------------------------------
 
 

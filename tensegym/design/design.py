@@ -14,7 +14,7 @@ from tensegym.structure import structure as structures
 from tensegym.structure.equilibrium import check_balance
 from tensegym.structure.form_finding import form_find
 from tensegym.structure.structure import Structure
-from tensegym.tables import bounded, check_fields, one_line
+from tensegym.tables import bounded, check_fields, noted, one_line
 
 from .parameters import Drive, ElasticCable, Payload, Rod, RodFlexure, StiffCable
 from .shape import Shape, check_shape, shape_of
@@ -33,15 +33,15 @@ class RobotDesign:
     """
 
     structure: Structure = field(default_factory=structures.six_rod)
-    name: str = "six_rod"
-    form_finding: bool = True  # repair the nodes so that the pretension balances; otherwise they must balance as given
-    passive_rod: Rod = Rod()
-    active_rod: Rod = Rod(tube_mass=0.038, end_mass=0.2, end_mass_radius=0.016)
-    elastic_cable: ElasticCable = ElasticCable()
-    stiff_cable: StiffCable = StiffCable()
-    drive: Drive = Drive()
-    payload: Payload | None = None
-    flexure: RodFlexure | None = None
+    name: str = noted("six_rod", "of the robot")
+    form_finding: bool = noted(True, "move the nodes so that the pretension balances; else they must balance as given")
+    passive_rod: Rod = noted(Rod(), "rods without drives")
+    active_rod: Rod = noted(Rod(tube_mass=0.038, end_mass=0.2, end_mass_radius=0.016), "rods that carry drives")
+    elastic_cable: ElasticCable = noted(ElasticCable(), "the cables that hold the robot")
+    stiff_cable: StiffCable = noted(StiffCable(), "the cables that drives wind")
+    drive: Drive = noted(Drive(), "of every stiff cable")
+    payload: Payload | None = noted(None, "a ball in the middle")
+    flexure: RodFlexure | None = noted(None, "a hinge that splits rods")
     attachment_radius: float = bounded(0, 0.1, 0.004, "m", "cables are tied this far from the rod's axis")
     spin_damping: float = bounded(0, 1, 1e-4, "N m s/rad", "resists a rod's spin about its own axis")
     friction: float = bounded(0, 10, 0.8, "", "Coulomb coefficient, feet and rods against ground and each other")

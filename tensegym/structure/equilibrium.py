@@ -29,7 +29,15 @@ def members(structure: Structure, stiff: bool = False) -> IntArray:
 
 
 def equilibrium_matrix(structure: Structure, stiff: bool = False) -> FloatArray:
-    """A (3n, m): times force densities (m,) it gives the members' pull on each node [N], xyz by xyz."""
+    """Equilibrium matrix A: times force densities it gives the members' pull on each node.
+
+    Args:
+        structure: n nodes and their members.
+        stiff: whether the stiff cables are members too.
+
+    Returns:
+        (3n, m) [m], rows xyz by xyz, columns in the order of `members`.
+    """
     pairs = members(structure, stiff)
     matrix = np.zeros((len(structure.nodes), 3, len(pairs)))
     span = structure.nodes[pairs[:, 1]] - structure.nodes[pairs[:, 0]]
@@ -41,13 +49,16 @@ def equilibrium_matrix(structure: Structure, stiff: bool = False) -> FloatArray:
 
 @dataclass(frozen=True)
 class StaticCount:
-    """rank of the equilibrium matrix, self-stress states (m - rank), mechanisms (3n - 6 - rank), and an orthonormal
-    basis of the self-stresses as force densities (m, states)."""
+    """How many self-stresses and mechanisms a structure of n nodes and m members has."""
 
     rank: int
+    """Of the equilibrium matrix."""
     self_stress_states: int
+    """m - rank."""
     mechanisms: int
+    """3n - 6 - rank."""
     basis: FloatArray
+    """(m, states) orthonormal self-stresses, as force densities."""
 
 
 def count_states(structure: Structure, stiff: bool = False) -> StaticCount:
@@ -60,9 +71,16 @@ def count_states(structure: Structure, stiff: bool = False) -> StaticCount:
 
 
 def feasible_self_stress(structure: Structure, stiff: bool = False) -> FloatArray | None:
-    """Force densities (m,) with every cable pulling, mean 1 over the cables, the weakest as strong as can be; or None.
+    """A self-stress in which every cable pulls and the weakest pulls as strongly as can be.
 
-    A linear program: maximise s with A q = 0, q >= s on the cables, mean q = 1.
+    A linear program: maximise s with A q = 0, q >= s on the cables, mean q = 1 over the cables.
+
+    Args:
+        structure: what is stressed.
+        stiff: whether the stiff cables are members too.
+
+    Returns:
+        (m,) force densities in the order of `members`, or None where there is no such self-stress.
     """
     matrix = equilibrium_matrix(structure, stiff)
     cables = matrix.shape[1] - len(structure.rods)
@@ -85,7 +103,15 @@ def feasible_self_stress(structure: Structure, stiff: bool = False) -> FloatArra
 
 
 def out_of_balance(structure: Structure, tension: ArrayLike) -> FloatArray:
-    """(n, 3) force [N] left on each node by these cable tensions (scalar or (c,)) and the best rod forces."""
+    """Force that cable tensions and the rod forces that balance them best leave on each node.
+
+    Args:
+        structure: what is stressed.
+        tension: of the elastic cables, scalar or (c,) [N].
+
+    Returns:
+        (n, 3) [N].
+    """
     matrix = equilibrium_matrix(structure)
     count = len(structure.cables)
     densities = np.broadcast_to(tension, count) / structure.lengths(structure.cables)

@@ -59,7 +59,15 @@ def hull_faces(structure: Structure) -> Faces:
 
 
 def face_by_nodes(faces: Faces, name: str) -> int:
-    """Index of the face whose nodes, counted from 1, are named as in 3-5-12, in any order."""
+    """Index of a face by the numbers of its nodes.
+
+    Args:
+        faces: those of a structure.
+        name: node numbers from 1 in any order, as in 3-5-12.
+
+    Raises:
+        StructureError: no face has these nodes; it lists those there are.
+    """
     names = faces.names()
     try:
         key = "-".join(str(n) for n in sorted(int(part) for part in name.split("-")))
@@ -69,9 +77,15 @@ def face_by_nodes(faces: Faces, name: str) -> int:
 
 
 def resting_rotation(nodes: FloatArray, triangle: IntArray, heading: float = 0.0) -> FloatArray:
-    """(3, 3) rotation that lays a hull triangle flat, outward side down.
+    """Rotation that lays a hull triangle flat, outward side down.
 
-    At heading 0 the line from the face's middle to its first node points along x; ``heading`` [rad] turns it about z.
+    Args:
+        nodes: (n, 3) positions in the structure's axes [m].
+        triangle: (3,) node indices, counter-clockwise seen from outside.
+        heading: from x to the line from the face's middle to its first node, about z [rad].
+
+    Returns:
+        (3, 3) from the structure's axes to the world's.
     """
     a, b, c = nodes[triangle]
     normal = np.cross(b - a, c - a)
@@ -84,23 +98,44 @@ def resting_rotation(nodes: FloatArray, triangle: IntArray, heading: float = 0.0
 
 @dataclass(frozen=True)
 class TipGeometry:
-    """Rigid tipping over the edge shared by two faces: angle [rad], rise of the centre of mass above where it rests
-    on the first face [m], and the horizontal distance between the two resting projections of it [m]."""
+    """Rigid tipping over the edge shared by two faces."""
 
     angle: float
+    """Between the two faces' normals [rad]."""
     barrier: float
+    """Rise of the centre of mass above where it rests on the first face [m]."""
     travel: float
+    """Horizontal distance between the centre of mass resting on one face and on the other [m]."""
 
 
 def resting_height(nodes: FloatArray, triangle: IntArray, centre: FloatArray) -> float:
-    """Height of ``centre`` (3,) above the plane of a hull triangle [m]."""
+    """Height of a point above the plane of a hull triangle.
+
+    Args:
+        nodes: (n, 3) positions [m].
+        triangle: (3,) node indices, counter-clockwise seen from outside.
+        centre: (3,) the point, in the nodes' axes [m].
+
+    Returns:
+        [m], positive inside the hull.
+    """
     a, b, c = nodes[triangle]
     normal = np.cross(b - a, c - a)
     return float((a - centre) @ normal / np.linalg.norm(normal))
 
 
 def tip_geometry(faces: Faces, nodes: FloatArray, centre: FloatArray, face: int, neighbour: int) -> TipGeometry:
-    """Tip a rigid body from ``face`` onto ``neighbour`` about their common edge."""
+    """Tip a rigid body from one face onto another about their common edge.
+
+    Args:
+        faces: those of the structure.
+        nodes: (n, 3) positions [m].
+        centre: (3,) centre of mass, in the nodes' axes [m].
+        face, neighbour: indices of the two faces.
+
+    Raises:
+        StructureError: the faces share no edge.
+    """
     shared = [n for n in faces.triangles[face].tolist() if n in faces.triangles[neighbour].tolist()]
     if len(shared) != 2:
         raise StructureError(f"faces {face} and {neighbour} share no edge")
@@ -117,8 +152,13 @@ def tip_geometry(faces: Faces, nodes: FloatArray, centre: FloatArray, face: int,
 def supporting_face(faces: Faces, nodes: FloatArray, centre: FloatArray) -> int:
     """The hull triangle that the line down from the centre of mass leaves the body through.
 
-    nodes (n, 3) and centre (3,) in the world, as deformed now; the triangles stay those of the structure at rest. The
-    lowest where the line meets several or, on a body bent out of shape, none.
+    Args:
+        faces: of the structure at rest.
+        nodes: (n, 3) positions in the world, as deformed now [m].
+        centre: (3,) centre of mass in the world [m].
+
+    Returns:
+        Its index; the lowest where the line meets several or, on a body bent out of shape, none.
     """
     return _face_under(faces.triangles, nodes, centre)
 

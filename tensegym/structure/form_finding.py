@@ -22,11 +22,18 @@ ROUNDING = 1e-14  # of the cables' tension, left out of balance where a shape is
 
 
 def form_find(structure: Structure, tension: float, payload_tension: float = 0.0) -> Structure:
-    """Move rigid rods until this tension [N] in every elastic cable balances; stiff cables are slack.
+    """Move rigid rods until one tension in every elastic cable balances; stiff cables are slack.
 
-    payload_tension: of one spring from every rod's middle to a common central body [N], in balance too. Solves for
-    the net force and moment on each rod from the given nodes, then lays the result back onto them as well as a rigid
-    motion can. Raises StructureError, naming the nodes out of balance, where that fails.
+    Solves for the net force and moment on each rod from the given nodes, then lays the result back onto them as well
+    as a rigid motion can.
+
+    Args:
+        structure: where the search begins.
+        tension: in every elastic cable [N], above 0.
+        payload_tension: in one spring from every rod's middle to a common central body [N], in balance too.
+
+    Raises:
+        StructureError: no shape in balance was found; it names the nodes furthest out.
     """
     if tension <= 0:
         raise StructureError(f"tension = {tension!r} N must be above 0 for form finding")

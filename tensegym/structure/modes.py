@@ -1,7 +1,8 @@
 """Free modes of rigid rods held by prestressed cables.
 
 Linearised about equilibrium: a cable of stiffness k, length l, tension T and direction u resists relative end motion
-with k u u^T + (T / l)(I - u u^T). Each rod has three translations and two turns across its axis.
+with k u u^T + (T / l)(I - u u^T) (Guest 2006, "The stiffness of prestressed frameworks: a unifying approach"). Each
+rod has three translations and two turns across its axis.
 """
 
 from __future__ import annotations
@@ -19,10 +20,12 @@ from .structure import Structure
 
 @dataclass(frozen=True)
 class Modes:
-    """frequencies (k,) [Hz], ascending, no rigid motions; shapes (k, n, 3): node displacements, mass-normalised."""
+    """Free vibrations, without the six rigid motions."""
 
     frequencies: FloatArray
+    """(k,) ascending [Hz]."""
     shapes: FloatArray
+    """(k, n, 3) node displacements, mass-normalised."""
 
     def multiplicities(self, tolerance: float = 1e-3) -> list[tuple[float, int]]:
         """Frequencies [Hz] that agree within ``tolerance`` (relative), with how often each occurs."""
@@ -40,8 +43,12 @@ def free_modes(
 ) -> Modes:
     """Modes in free flight.
 
-    tension, stiffness: scalar or (c,) of the elastic cables [N], [N/m]; masses (r,) or scalar [kg] and
-    transverse_inertias (r,) or scalar [kg m^2] of the rods, about their centres.
+    Args:
+        structure: in balance under the tensions.
+        tension: of the elastic cables, scalar or (c,) [N].
+        stiffness: of the elastic cables, scalar or (c,) [N/m].
+        masses: of the rods, scalar or (r,) [kg].
+        transverse_inertias: of the rods about their centres, across their axes, scalar or (r,) [kg m^2].
     """
     stiff = _node_stiffness(structure, tension, stiffness)
     to_nodes, mass = _rod_coordinates(structure, masses, transverse_inertias)
@@ -53,7 +60,16 @@ def free_modes(
 
 
 def breathing_frequency(tension: float, mass: float, cable_length: float) -> float:
-    """Breathing mode of six equal rods [Hz]: w^2 = 8 T / (m l), whatever the stiffness."""
+    """Breathing mode of six equal rods: w^2 = 8 T / (m l), whatever the stiffness.
+
+    Args:
+        tension: of every elastic cable [N].
+        mass: of a rod [kg].
+        cable_length: of every elastic cable [m].
+
+    Returns:
+        Frequency [Hz].
+    """
     return float(np.sqrt(8 * tension / (mass * cable_length)) / (2 * np.pi))
 
 

@@ -31,18 +31,16 @@ _PAPER_STIFF_CABLES = [(3, 7), (4, 9), (5, 10), (6, 2), (11, 8), (12, 1)]  # act
 
 @dataclass(frozen=True)
 class Structure:
-    """Nodes and what joins them.
-
-    nodes: (n, 3) coordinates [m]. rods: (r, 2) node indices, every node on exactly one rod (class 1).
-    cables: (c, 2) elastic cables. stiff_cables: (w, 2) cables wound by drives, the drive's end first.
-
-    Raises StructureError, naming nodes counted from 1, for anything else.
-    """
+    """Nodes and what joins them. Raises StructureError, naming nodes counted from 1, for what is not of class 1."""
 
     nodes: FloatArray
+    """(n, 3) coordinates [m]."""
     rods: IntArray
+    """(r, 2) node indices, every node on exactly one rod."""
     cables: IntArray
+    """(c, 2) node indices of the elastic cables."""
     stiff_cables: IntArray
+    """(w, 2) node indices of the cables wound by drives, the drive's end first."""
 
     def __post_init__(self) -> None:
         nodes = as_rows(self.nodes, 3, "nodes", StructureError, "x, y, z in m")
@@ -106,9 +104,12 @@ def _six_rod_nodes(rod_length: float, spacing: float) -> FloatArray:
 
 
 def six_rod(rod_length: float = PAPER_ROD_LENGTH, spacing: float | None = None) -> Structure:
-    """The six-rod robot: the paper's members; parallel rods L/2 apart, where equal cable tensions balance.
+    """The six-rod robot with the paper's members.
 
-    The paper's own spacing (``spacing=PAPER_SPACING``, 0.8907 L) has no self-stress.
+    Args:
+        rod_length: of all rods [m].
+        spacing: of parallel rods [m]; without it half a rod, where equal cable tensions balance. The paper's own
+            (`PAPER_SPACING`, 0.8907 of its rods) has no self-stress.
     """
     nodes = _six_rod_nodes(rod_length, rod_length / 2 if spacing is None else spacing)
     return Structure(
