@@ -42,6 +42,8 @@ class RollingVectorEnv(VectorEnv):
         """Start every environment: seed s gives s, s + 1, ...; options as RollingEnv takes them."""
         if seed is None or isinstance(seed, int):
             seed = [None if seed is None else seed + i for i in range(self.num_envs)]
+        if len(seed) != self.num_envs:
+            raise DesignError(f"seed has {len(seed)} entries; give one an environment, {self.num_envs}, or one number")
         observations, infos = self.batch.reset(seed, options)
         return observations, self._joined(infos)
 

@@ -17,6 +17,7 @@ from optuna.trial import TrialState, create_trial
 from sqlalchemy.exc import SQLAlchemyError
 
 from tensegym.errors import InputError
+from tensegym.files import VERSION, without_version
 
 from .asker import Asker
 from .evaluate import TrialResult
@@ -29,6 +30,12 @@ Finished = dict[int, tuple[dict[str, Value], TrialResult]]  # number of a trial:
 def masked(url: str) -> str:
     """A database URL as it may be shown and kept: with *** for its password."""
     return re.sub(r"((?:^|[?&])[^=&?]*password=)[^&]*", r"\1***", re.sub(r"(://[^/?#]*?:).*@", r"\1***@", url))
+
+
+def _unanswered(url: str, error: Exception) -> InputError:
+    cause = error.__cause__ or error  # Optuna wraps what the database said
+    reason = str(cause).splitlines()[0].replace(url, masked(url))
+    return InputError(f"storage {masked(url)!r} does not answer: {reason}")
 
 
 class Store:
@@ -56,11 +63,13 @@ class Store:
         except KeyError as error:
             raise InputError(f"{masked(url)} holds no study {name!r}; start one with `tensegym design run`") from error
         except (SQLAlchemyError, ImportError, optuna.exceptions.OptunaError) as error:
-            reason = str(error).splitlines()[0].replace(url, masked(url))
-            raise InputError(f"storage {masked(url)!r} does not answer: {reason}") from None
+            raise _unanswered(url, error) from None
+        self._url = url
+        without_version({"version": self.noted("version") or 0}, masked(url))
         known = self._study.user_attrs.get("problem")
         if problem is not None and known is None:
-            self._study.set_user_attr("problem", problem.text)
+            self.note("version", VERSION)
+            self.note("problem", problem.text)
         elif problem is not None and known != problem.text:
             raise InputError(f"{folder} holds the study of another task file; resume that one, or give another --out")
 
@@ -74,21 +83,28 @@ class Store:
         return self._study
 
     def note(self, key: str, value: Any) -> None:
-        """Keep a plain value with the study."""
-        self._study.set_user_attr(key, value)
+        """Keep a plain value with the study. Raises InputError where the database does not take it."""
+        try:
+            self._study.set_user_attr(key, value)
+        except (SQLAlchemyError, optuna.exceptions.OptunaError) as error:
+            raise _unanswered(self._url, error) from None
 
     def noted(self, key: str) -> Any:
         """What `note` kept, or None."""
         return self._study.user_attrs.get(key)
 
     def add(self, asker: Asker, values: dict[str, Value], outcome: TrialResult) -> None:
-        """Write a finished trial."""
+        """Write a finished trial. Raises InputError where the database does not take it, as on a full disk."""
         refused = outcome.refused is not None
-        self._study.add_trial(create_trial(
+        trial = create_trial(
             state=TrialState.FAIL if refused else TrialState.COMPLETE,
             values=None if refused else [outcome.metrics[o.metric] for o in asker.settings.objectives],
             params=values, distributions=asker.distributions, user_attrs={"outcome": asdict(outcome)},
-        ))  # fmt: skip
+        )  # fmt: skip
+        try:
+            self._study.add_trial(trial)
+        except (SQLAlchemyError, optuna.exceptions.OptunaError) as error:
+            raise _unanswered(self._url, error) from None
 
     def pace(self, budget: int) -> dict[str, float | None]:
         """Trials a minute over the last fifty, and the seconds that ``budget`` trials still take at that rate."""

@@ -83,6 +83,27 @@ def test_bad_input_is_an_error_here_and_leaves_the_processes_at_work():
             RollingVectorEnv(**arguments)
 
 
+@pytest.mark.parametrize("processes", [1, 2])
+def test_actions_and_seeds_that_do_not_fit_are_refused_before_any_environment_steps(processes):
+    vector, twin = (RollingVectorEnv(3, processes, **SHORT) for _ in range(2))
+    for env in (vector, twin):
+        env.reset(seed=0)
+    nan = np.zeros((3, 6))
+    nan[2, 1] = np.nan
+    for actions, words in (
+        (np.zeros((4, 6)), r"\(3, 6\).*\(4, 6\)"), (np.zeros((2, 6)), r"\(2, 6\)"), (np.zeros((3, 7)), r"\(3, 7\)"),
+        (np.zeros(18), r"\(18,\)"), (None, "shape"), ("no", "no"), (nan, "row 2"),
+    ):  # fmt: skip
+        with pytest.raises(DesignError, match=words):
+            vector.step(actions)
+    with pytest.raises(DesignError, match="seed has 2 entries"):
+        vector.reset(seed=[1, 2])
+    for one, two in zip(vector.step(np.ones((3, 6)))[:4], twin.step(np.ones((3, 6)))[:4], strict=True):
+        np.testing.assert_array_equal(one, two)
+    for env in (vector, twin):
+        env.close()
+
+
 def test_a_dead_process_is_an_error_and_none_is_left():
     vector = RollingVectorEnv(2, 2, **SHORT)
     vector.reset(seed=0)

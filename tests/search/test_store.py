@@ -1,9 +1,14 @@
 """What a store shows and keeps of its database's address."""
 
+import sqlite3
+
 import pytest
+import sqlalchemy
 
 from tensegym.cli.design import open_search
 from tensegym.errors import InputError
+from tensegym.search.asker import Asker
+from tensegym.search.evaluate import TrialResult
 from tensegym.search.store import Store, masked
 
 
@@ -33,3 +38,21 @@ def test_a_search_whose_password_was_not_kept_asks_for_it(tmp_path):
     (tmp_path / "storage.txt").write_text(masked("postgresql://me:secret@host/db"))
     with pytest.raises(InputError, match=r"kept at postgresql://me:\*\*\*@host/db, .*give --storage URL again"):
         open_search(tmp_path)
+
+
+def test_a_database_that_takes_nothing_more_is_told_in_one_line(tiny, tmp_path):
+    store = Store(tmp_path, problem := tiny())
+    with sqlite3.connect(tmp_path / "study.db") as other:
+        full = other.execute("PRAGMA page_count").fetchone()[0]
+    sqlalchemy.event.listen(store.study._storage._backend.engine, "checkout",
+                            lambda c, *_: c.execute(f"PRAGMA max_page_count = {full}"))  # fmt: skip
+    asker = Asker(problem)
+    with pytest.raises(InputError, match=r"study\.db' does not answer: .*full"):
+        for number in range(200):
+            store.add(asker, asker.ask()[0], TrialResult(number, {"speed_lps": 1.0, "notes" * 500: 0.0}, 1))
+
+
+def test_a_study_of_a_newer_version_is_refused(tiny, tmp_path):
+    Store(tmp_path, tiny()).note("version", 2)
+    with pytest.raises(InputError, match=r"study\.db is of version 2, this tensegym reads up to 1"):
+        Store(tmp_path, None)
