@@ -446,7 +446,7 @@ SELF_JOINED = {"structure": {"cables": [[1, 1], *design_to_dict(RobotDesign())["
         (f"[structure]\ncables = {SELF_JOINED['structure']['cables']}", ["cables member 1-1", "node 1 to itself"]),
         ("form_finding = false\n[structure]\nrod_length = 0.7\nspacing = 0.6", ["no self-stress", "balance: 1 "]),
         ("[elastic_cable\n", ["is not TOML"]),
-        ("[payload]\nmass = nan", ["Payload.mass = nan"]),
+        ("[payload]\nmass = nan", ["payload.mass = nan"]),
     ],
 )
 @pytest.mark.parametrize("command", ["step", "simulate"])
