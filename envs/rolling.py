@@ -55,6 +55,9 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
     Observation ``onboard``: rod axis (6 x 3) and turn rate across the axis (6 x 3, in 5 rad/s) in the heading frame,
     as an inertial unit on each rod reports them, then drive angle, speed and current.
 
+    Observations ``full-goal`` and ``onboard-goal`` end with three entries more: the distance to the place to go to, as a
+    part of 4 rod lengths and of 1, neither above 1 (the wanted direction points there), and 1 where it is to stop there.
+
     With ``vary``, which maps fields of the design to ranges (see `tensegym.design.variation`), the robot is another one
     every ``episodes_per_design`` episodes and at every seeded reset: drawn uniformly, refused ones again. Either
     observation then ends with where the design lies in each range, -1 to 1. With 0 episodes the design stays as given.
@@ -63,7 +66,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
 
     Reward: progress of the centre of mass along the wanted direction, less ``slip`` times the path of the grounded
     feet's centres (mean over the feet), both in rod lengths, less ``energy`` times the joules drawn. The terms are in
-    ``info["reward_terms"]``; ``info["gait"]`` holds the gait metrics since the reset.
+    ``info["reward_terms"]``; ``info["gait"]`` holds the gait metrics since the reset, ``info["measures"]`` those of the
+    task's own.
 
     Start: at rest on a random face, at a random heading, towards a random direction, settled for ``settle`` seconds.
 
@@ -173,6 +177,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         episode = self._running()
         terms = episode.advance(self.robot.angles_of(command), self.substeps)
         info: dict[str, Any] = {"reward_terms": terms, "gait": episode.gait.as_dict()}
+        if self.task.MEASURES:
+            info["measures"] = self.task.measures(episode)
         if episode.ended:
             info["termination"] = episode.ended
         if self.render_mode == "human":
@@ -245,7 +251,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
     def _seen(self, episode: Episode) -> NDArray[np.float32]:
         if episode.diverged:
             return np.zeros(self.observation_space.shape, np.float32)
-        return self.observation.see(self.robot, episode.direction, episode.reading)
+        return self.observation.see(self.robot, episode.bearing, episode.reading)
 
 
 def _box(observation: Observation) -> spaces.Box:

@@ -14,6 +14,7 @@ import numpy as np
 import tyro
 
 from tensegym.arrays import FloatArray, IntArray
+from tensegym.control.bearing import Bearing
 from tensegym.control.cpg import Cpg, CpgController, cable_ends_in_heading, drive_kinds, feedback_text, pose_terms
 from tensegym.control.policy import PolicyController
 from tensegym.files import write_text
@@ -65,11 +66,11 @@ class _Examples:
         if self.generator:
             self.generator.begin(robot, seed)
 
-    def angles(self, robot: TensegrityRobot, direction: FloatArray) -> FloatArray:
-        action = self.policy.action(robot, direction).astype(float)
-        self.terms.append(pose_terms(cable_ends_in_heading(robot, direction)))
+    def angles(self, robot: TensegrityRobot, bearing: Bearing) -> FloatArray:
+        action = self.policy.action(robot, bearing).astype(float)
+        self.terms.append(pose_terms(cable_ends_in_heading(robot, bearing.direction)))
         self.commands.append(action / 2)
-        return self.generator.angles(robot, direction) if self.generator else robot.angles_of(action)
+        return self.generator.angles(robot, bearing) if self.generator else robot.angles_of(action)
 
 
 def fit(terms: FloatArray, commands: FloatArray, kinds: IntArray) -> FloatArray:

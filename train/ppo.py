@@ -69,12 +69,13 @@ def train(config: TrainConfig, seed: int, out: Path, state: dict[str, Any]) -> i
         elif config.start is not None:
             begin_from(config.start, model, env)
         model.set_logger(configure(str(out / "tensorboard"), ["tensorboard", "csv"]))
+        metric = workers.get_attr("task")[0].goal.metric
         chunk_steps = config.chunk * config.rollout_steps
         with tqdm(total=config.steps, initial=state["steps"], unit="step", desc=out.name, file=sys.stderr) as bar:
             while state["steps"] < config.steps:
                 began = time.perf_counter()
                 _start_chunk(model, env, config, seed, state["steps"])
-                model.learn(chunk_steps, callback=Watch(bar, out, state), reset_num_timesteps=False)
+                model.learn(chunk_steps, callback=Watch(bar, out, state, metric), reset_num_timesteps=False)
                 state["steps"] = model.num_timesteps
                 state["seconds"] += time.perf_counter() - began
                 write_checkpoint(model, env, out, state)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import time
 from pathlib import Path
 from typing import Any
@@ -14,23 +15,24 @@ from tqdm import tqdm
 from tensegym.files import replace_file
 
 CURVE_FIELDS = ("steps", "hours", "episodes", "speed_lps", "speed_lps_p10", "slip_share", "tips", "audit_excess",
-                "action_std")  # fmt: skip
+                "action_std", "goal")  # fmt: skip
 
 
 class Watch(BaseCallback):
     """Progress bar, and one row of curve.csv an update from the episodes that ended in it."""
 
-    def __init__(self, bar: tqdm, out: Path, state: dict[str, Any]) -> None:
+    def __init__(self, bar: tqdm, out: Path, state: dict[str, Any], metric: str) -> None:
         super().__init__()
         self.bar, self.state, self.path = bar, state, out / "curve.csv"
         self.began = time.perf_counter()
-        self.gaits: list[dict[str, Any]] = []
+        self.metric, self.gaits, self.goals = metric, list[dict[str, Any]](), list[float]()
 
     def _on_step(self) -> bool:
         self.bar.update(self.training_env.num_envs)
         for done, info in zip(self.locals["dones"], self.locals["infos"], strict=True):
             if done:
                 self.gaits.append(info["gait"])
+                self.goals.append((info["gait"] | info.get("measures", {})).get(self.metric, math.nan))
         return True
 
     def _on_training_end(self) -> None:
@@ -41,7 +43,7 @@ class Watch(BaseCallback):
             self.num_timesteps, (self.state["seconds"] + time.perf_counter() - self.began) / 3600, len(self.gaits),
             np.median(speeds), np.quantile(speeds, 0.1), np.median([g["slip_share"] for g in self.gaits]),
             np.mean([g["tips"] for g in self.gaits]), np.max([g["audit_excess"] for g in self.gaits]),
-            float(self.model.policy.log_std.detach().exp().mean()),
+            float(self.model.policy.log_std.detach().exp().mean()), float(np.mean(self.goals)),
         )  # fmt: skip
         before = self.path.read_text()
         with replace_file(self.path) as file:
@@ -49,4 +51,4 @@ class Watch(BaseCallback):
             csv.writer(file).writerow([f"{v:.6g}" if isinstance(v, float) else v for v in row])
         for name, value in zip(CURVE_FIELDS[3:], row[3:], strict=True):
             self.logger.record(f"gait/{name}", float(value))
-        self.bar.set_postfix_str(f"{np.median(speeds):.3f} L/s, slip {row[5]:.2f}, {row[6]:.0f} tips")
+        self.bar.set_postfix_str(f"{np.median(speeds):.3f} L/s, slip {row[5]:.2f}, {self.metric} {row[-1]:.3g}")

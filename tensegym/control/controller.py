@@ -7,6 +7,8 @@ from typing import Protocol
 from tensegym.arrays import FloatArray
 from tensegym.robot.robot import TensegrityRobot
 
+from .bearing import Bearing
+
 
 class Controller(Protocol):
     """Told to begin on a robot that stands as its episode starts, then asked for commands once a period."""
@@ -26,10 +28,10 @@ class Controller(Protocol):
             DesignError: it does not fit the robot.
         """
 
-    def angles(self, robot: TensegrityRobot, direction: FloatArray) -> FloatArray:
+    def angles(self, robot: TensegrityRobot, bearing: Bearing) -> FloatArray:
         """Commanded spool angles (w,) [rad] for the next period.
 
         Args:
             robot: as it is now.
-            direction: (2,) wanted heading now, a unit vector in the world's horizontal plane.
+            bearing: the way to go now.
         """

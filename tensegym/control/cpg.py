@@ -33,6 +33,8 @@ from tensegym.robot.reading import heading_rotation
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.tables import Checked, bounded, parse_toml
 
+from .bearing import Bearing
+
 if TYPE_CHECKING:
     from .policy import PolicyController
 
@@ -133,15 +135,15 @@ class CpgController:
         if self._policy:
             self._policy.begin(robot, seed)
 
-    def _feedback(self, robot: TensegrityRobot, direction: FloatArray) -> NDArray[Any]:
+    def _feedback(self, robot: TensegrityRobot, bearing: Bearing) -> NDArray[Any]:
         if self._policy:
-            return self._policy.action(robot, direction) / 2
-        return (self._weights * pose_terms(cable_ends_in_heading(robot, direction))).sum(axis=1)
+            return self._policy.action(robot, bearing) / 2
+        return (self._weights * pose_terms(cable_ends_in_heading(robot, bearing.direction))).sum(axis=1)
 
-    def angles(self, robot: TensegrityRobot, direction: FloatArray) -> FloatArray:
+    def angles(self, robot: TensegrityRobot, bearing: Bearing) -> FloatArray:
         """As `Controller` has it; advances the oscillators by a period."""
         p = self.parameters
-        signal = self._feedback(robot, direction)
+        signal = self._feedback(robot, bearing)
         part = np.clip(0.5 + p.gain * signal + self._amplitudes * np.cos(self.phases), 0, 1)
         steps = max(1, round(p.period / 0.02))
         for _ in range(steps):

@@ -18,6 +18,8 @@ from tensegym.physics.model import DAMPING, STIFFNESS
 from tensegym.robot.reading import NODE_REACH, Reading, heading_rotation, read
 from tensegym.robot.robot import SPEED_BOUND, TensegrityRobot
 
+from .bearing import Bearing
+
 
 @dataclass(frozen=True)
 class Part:
@@ -48,13 +50,13 @@ class Observation:
         """(size,) largest absolute value of each entry."""
         return np.concatenate([np.full(p.size, p.bound) for p in self.parts]).astype(np.float32)
 
-    def values(self, robot: TensegrityRobot, reading: Reading, direction: FloatArray) -> FloatArray:
-        """(size,) what is seen of a robot, as it was just read, that is to go in a direction (2,)."""
+    def values(self, robot: TensegrityRobot, reading: Reading, bearing: Bearing) -> FloatArray:
+        """(size,) what is seen of a robot, as it was just read, that is to go by a bearing."""
         raise NotImplementedError
 
-    def see(self, robot: TensegrityRobot, direction: FloatArray, reading: Reading | None = None) -> NDArray[np.float32]:
+    def see(self, robot: TensegrityRobot, bearing: Bearing, reading: Reading | None = None) -> NDArray[np.float32]:
         """(size,) the observation; pass the robot's reading where there is one already."""
-        return self.values(robot, read(robot) if reading is None else reading, direction).astype(np.float32)
+        return self.values(robot, read(robot) if reading is None else reading, bearing).astype(np.float32)
 
 
 def _drive_readings(robot: TensegrityRobot) -> list[FloatArray]:
@@ -91,9 +93,9 @@ class FullObservation(Observation):
             Part("tension", "cable", cables, 1, most),
         )
 
-    def values(self, robot: TensegrityRobot, reading: Reading, direction: FloatArray) -> FloatArray:
+    def values(self, robot: TensegrityRobot, reading: Reading, bearing: Bearing) -> FloatArray:
         """As `Observation` has it."""
-        turn = heading_rotation(direction)
+        turn = heading_rotation(bearing.direction)
         below = reading.centre * [1.0, 1.0, 0.0]
         return np.concatenate([
             ((reading.nodes - below) @ turn.T).ravel() / self.length,
@@ -123,21 +125,38 @@ class OnboardObservation(Observation):
             Part("drive current", "drive", wound, 1, 1.0),
         )
 
-    def values(self, robot: TensegrityRobot, reading: Reading, direction: FloatArray) -> FloatArray:
+    def values(self, robot: TensegrityRobot, reading: Reading, bearing: Bearing) -> FloatArray:
         """As `Observation` has it."""
         poses = robot.poses_in_world[: self.rods]
         axes = Rotation.from_quat(poses[:, 3:]).as_matrix()[:, :, 2]
         rates = reading.velocities[: self.rods, 3:]
         rates = rates - (rates * axes).sum(axis=1)[:, None] * axes
-        turn = heading_rotation(direction)
+        turn = heading_rotation(bearing.direction)
         return np.concatenate([
             (axes @ turn.T).ravel(), (rates @ turn.T).ravel() / self.rate_scale, *_drive_readings(robot)
         ])  # fmt: skip
 
 
+class GoalObservation(Observation):
+    """Another observation, and what there is to say of the place to go to beside its direction, which is the heading
+    frame's: how far it is, as a part of four rod lengths and of one, and whether to stop there."""
+
+    def __init__(self, observation: Observation, robot: TensegrityRobot) -> None:
+        self._observation, self._length = observation, robot.design.length
+        self.parts = (*observation.parts, Part("goal", "robot", 1, 3, 1.0))
+
+    def values(self, robot: TensegrityRobot, reading: Reading, bearing: Bearing) -> FloatArray:
+        """As `Observation` has it."""
+        far = bearing.distance / self._length
+        goal = [min(far / 4, 1.0), min(far, 1.0), float(bearing.stay)]
+        return np.concatenate([self._observation.values(robot, reading, bearing), goal])
+
+
 OBSERVATIONS: dict[str, Callable[[TensegrityRobot], Observation]] = {
     "full": FullObservation,
     "onboard": OnboardObservation,
+    "full-goal": lambda robot: GoalObservation(FullObservation(robot), robot),
+    "onboard-goal": lambda robot: GoalObservation(OnboardObservation(robot), robot),
 }
 
 
@@ -149,9 +168,9 @@ class ConditionedObservation(Observation):
         self._place = variation.normalised(robot.design)
         self.parts = (*observation.parts, Part("design", "robot", len(self._place), 1, 1.0))
 
-    def values(self, robot: TensegrityRobot, reading: Reading, direction: FloatArray) -> FloatArray:
+    def values(self, robot: TensegrityRobot, reading: Reading, bearing: Bearing) -> FloatArray:
         """As `Observation` has it."""
-        return np.concatenate([self._observation.values(robot, reading, direction), self._place])
+        return np.concatenate([self._observation.values(robot, reading, bearing), self._place])
 
 
 def make_observation(kind: str, robot: TensegrityRobot, variation: Variation | None = None) -> Observation:

@@ -8,6 +8,8 @@ from tensegym.arrays import FloatArray
 from tensegym.errors import DesignError
 from tensegym.robot.robot import TensegrityRobot
 
+from .bearing import Bearing
+
 
 class Playback:
     """Plays spool angles against time, linear in between, the last ones held.
@@ -33,7 +35,7 @@ class Playback:
                               f"outside [0, {limit[drive]:.4g}] rad")  # fmt: skip
         self._played = 0
 
-    def angles(self, robot: TensegrityRobot, direction: FloatArray | None = None) -> FloatArray:
+    def angles(self, robot: TensegrityRobot, bearing: Bearing | None = None) -> FloatArray:
         """As `Controller` has it: the commands of the period after the last one asked for."""
         now = self.times[0] + self._played * self.period
         self._played += 1

@@ -17,6 +17,7 @@ from tensegym.errors import DesignError, InputError
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.tables import mapping, one_line, read_yaml, show
 
+from .bearing import Bearing
 from .observation import make_observation
 from .policy_file import SETTINGS, WEIGHTS, SavedPolicy, read_policy
 
@@ -148,10 +149,10 @@ class PolicyController:
                     "evaluate it on a robot of the same kind, with the observation it was trained with"
                 )
 
-    def action(self, robot: TensegrityRobot, direction: FloatArray) -> NDArray[np.float32]:
+    def action(self, robot: TensegrityRobot, bearing: Bearing) -> NDArray[np.float32]:
         """(w,) commands from -1, let out, to 1, the deepest pull."""
-        return np.clip(self.policy(self._observation.see(robot, direction)), -1, 1)
+        return np.clip(self.policy(self._observation.see(robot, bearing)), -1, 1)
 
-    def angles(self, robot: TensegrityRobot, direction: FloatArray) -> FloatArray:
+    def angles(self, robot: TensegrityRobot, bearing: Bearing) -> FloatArray:
         """As `Controller` has it."""
-        return robot.angles_of(self.action(robot, direction).astype(float))
+        return robot.angles_of(self.action(robot, bearing).astype(float))

@@ -7,6 +7,8 @@ import numpy as np
 from tensegym.arrays import FloatArray
 from tensegym.robot.robot import TensegrityRobot
 
+from .bearing import Bearing
+
 
 class RandomCommands:
     """Every drive anywhere in its range, drawn anew each period."""
@@ -18,6 +20,6 @@ class RandomCommands:
         """As `Controller` has it."""
         self._rng = np.random.default_rng(seed)
 
-    def angles(self, robot: TensegrityRobot, direction: FloatArray) -> FloatArray:
+    def angles(self, robot: TensegrityRobot, bearing: Bearing) -> FloatArray:
         """As `Controller` has it."""
         return robot.angles_of(self._rng.uniform(-1, 1, len(robot.drives)))

@@ -18,6 +18,7 @@ from tensegym.robot.reading import heading_rotation
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.tables import Checked, bounded
 
+from .bearing import Bearing
 from .tipping import Pull, Tip, current_face, face_direction, tip_table
 
 
@@ -67,10 +68,10 @@ class Walker:
         self._pull: Pull | None = None
         self._since = 0.0
 
-    def angles(self, robot: TensegrityRobot, direction: FloatArray) -> FloatArray:
+    def angles(self, robot: TensegrityRobot, bearing: Bearing) -> FloatArray:
         """As `Controller` has it."""
         if self._pull is None or robot.time - self._since >= self._pull.duration - 1e-9:
-            self._pull, self._since = self._played(self.choose(robot, direction)), robot.time
+            self._pull, self._since = self._played(self.choose(robot, bearing.direction)), robot.time
         return self._pull.angles(robot, robot.time - self._since)
 
     def _played(self, pull: Pull) -> Pull:

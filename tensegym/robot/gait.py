@@ -20,7 +20,8 @@ AUDIT_TOLERANCE = 0.01  # mechanical energy over what the start and the drives' 
 class GaitMetrics:
     """One trial. Displacements are horizontal and of the centre of mass.
 
-    speed: displacement along the wanted direction over time [m/s]; speed_lps the same in rod lengths a second.
+    speed: displacement along the wanted direction, summed over its changes, over time [m/s]; speed_lps the same in rod
+    lengths a second.
     path: length of the way [m]. tips: changes of the hull triangle under the centre of mass.
     slip_share: path of the grounded feet's centres, averaged over the grounded feet, over the path of the centre of
     mass: 0 for pure rolling, 1 for a body that skates. slip_share_sum: the same with the feet's paths summed.
@@ -75,14 +76,15 @@ class DriveMeter:
 class GaitMeter:
     """Watches a robot through a trial; call `update` once a control step.
 
-    direction: wanted heading in the world's horizontal plane, (2,) unit vector.
+    direction: wanted heading in the world's horizontal plane, (2,) unit vector; `turn` changes it.
     """
 
     def __init__(self, robot: TensegrityRobot, direction: FloatArray) -> None:
         self.robot = robot
         self.direction = np.asarray(direction, dtype=float)
         self._weight, self._length = robot.design.mass * robot.design.gravity, robot.design.length
-        self._start = robot.centre_of_mass_in_world()
+        self._start = self._turned_at = robot.centre_of_mass_in_world()
+        self._made = 0.0  # m, along the directions before this one
         self._start_time = robot.time
         self._start_totals = robot.totals()
         self._start_energy = robot.energies().total
@@ -104,6 +106,14 @@ class GaitMeter:
         total = robot.energies(velocities).total
         self._excess = max(self._excess, total / allowed - 1 if allowed else float(total > 0))
 
+    def turn(self, direction: FloatArray) -> None:
+        """From now on way counts along another direction (2,)."""
+        if np.array_equal(direction, self.direction):
+            return
+        here = self.robot.centre_of_mass_in_world()
+        self._made += float(self.direction @ (here - self._turned_at)[:2])
+        self.direction, self._turned_at = direction, here
+
     @property
     def displacement(self) -> FloatArray:
         """(3,) of the centre of mass since the trial began, in the world [m]."""
@@ -113,7 +123,7 @@ class GaitMeter:
         """The trial so far."""
         robot, start, now = self.robot, self._start_totals, self.robot.totals()
         duration = max(robot.time - self._start_time, robot.dt)
-        along = float(self.direction @ self.displacement[:2])
+        along = self._made + float(self.direction @ (robot.centre_of_mass_in_world() - self._turned_at)[:2])
         path = max(now.centre_path - start.centre_path, 1e-9)
         energy = now.electrical_energy - start.electrical_energy
         return GaitMetrics(

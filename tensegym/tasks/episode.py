@@ -8,6 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from tensegym.arrays import FloatArray
+from tensegym.control.bearing import Bearing
 from tensegym.errors import SimulationError
 from tensegym.robot.gait import NO_GAIT, DriveMeter, GaitMeter, GaitMetrics
 from tensegym.robot.reading import NODE_REACH, Reading, farthest_node, read
@@ -62,15 +63,11 @@ class Episode:
             self.goal = Heading.at(self.start.direction)
             self._fail(f"while it settled: {error}")
             return
-        self.meter = GaitMeter(robot, self.direction)
+        self.bearing: Bearing = self.goal.bearing(robot)
+        """As the controller is told it now."""
+        self.meter = GaitMeter(robot, self.bearing.direction)
         self.gait = self.meter.metrics()
-        self._totals = robot.totals()
-        self._along = float(self.direction @ self.reading.centre[:2])
-
-    @property
-    def direction(self) -> FloatArray:
-        """(2,) wanted heading now: a unit vector in the world's horizontal plane."""
-        return self.goal.direction(self.robot)
+        self._totals, self._time = robot.totals(), robot.time
 
     @property
     def sound(self) -> bool:
@@ -88,19 +85,23 @@ class Episode:
         except SimulationError as error:
             self._fail(str(error))
             return self.task.rewards(self, 0.0, 0.0, 0.0)
-        self.reading = reading
+        before, self.reading = self.reading, reading
         self.meter.update(reading.nodes, reading.velocities)
         self.drives.update()
         self.gait = self.meter.metrics()
-        self.ended = self.task.over(self)
-        return self._rewards()
+        way = self.goal.made(self.bearing, before.centre[:2], reading.centre[:2])
+        self.goal.update(robot, way, robot.time - self._time)
+        self.ended, self._time = self.task.over(self), robot.time
+        terms = self._rewards(way)
+        self.bearing = self.goal.bearing(robot)
+        self.meter.turn(self.bearing.direction)
+        return terms
 
-    def _rewards(self) -> dict[str, float]:
+    def _rewards(self, way: float) -> dict[str, float]:
         totals, before, length = self.robot.totals(), self._totals, self._length
-        along = float(self.direction @ self.reading.centre[:2])
-        progress, self._along, self._totals = along - self._along, along, totals
+        self._totals = totals
         return self.task.rewards(
-            self, progress / length, (totals.foot_path - before.foot_path) / length,
+            self, way / length, (totals.foot_path - before.foot_path) / length,
             totals.electrical_energy - before.electrical_energy,
         )  # fmt: skip
 

@@ -39,7 +39,7 @@ class GaitRecorder:
 
     def __call__(self, episode: Episode) -> None:
         robot = episode.robot
-        self.direction, self.robot = episode.direction, robot.design
+        self.direction, self.robot = episode.bearing.direction, robot.design
         self.driven = robot.model.driven
         self.times.append(robot.time)
         self.centres.append(robot.centre_of_mass_in_world())

@@ -1,26 +1,35 @@
-"""Goals: what is wanted of one episode. Whatever it is, a controller is told a direction at each of its periods."""
+"""Goals: what is wanted of one episode. Whatever it is, a controller is told a bearing at each of its periods."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from tensegym.arrays import FloatArray
+from tensegym.control.bearing import Bearing
 from tensegym.robot.robot import TensegrityRobot
 
 
-class Goal(Protocol):
-    """What an episode wants of a robot."""
+class Goal:
+    """Base: what an episode wants of a robot."""
 
-    def direction(self, robot: TensegrityRobot) -> FloatArray:
-        """(2,) wanted heading now: a unit vector in the world's horizontal plane."""
+    def bearing(self, robot: TensegrityRobot) -> Bearing:
+        """The way to go now."""
+        raise NotImplementedError
+
+    def update(self, robot: TensegrityRobot, way: float, seconds: float) -> None:
+        """Look at the robot after a control step of so many seconds, in which it `made` so much way [m]; from now on the
+        bearing may be another."""
+
+    def made(self, bearing: Bearing, before: FloatArray, after: FloatArray) -> float:
+        """Way made towards what a bearing wanted [m], by a centre of mass that went from one place (2,) to another."""
+        return float(bearing.direction @ after) - float(bearing.direction @ before)
 
 
 @dataclass(frozen=True)
-class Heading:
+class Heading(Goal):
     """One direction for the whole episode."""
 
     towards: FloatArray
@@ -29,11 +38,11 @@ class Heading:
     @classmethod
     def at(cls, angle: float) -> Heading:
         """That of an angle from the world's x axis [rad]."""
-        return cls(np.array([math.cos(angle), math.sin(angle)]))
+        return cls(unit(angle))
 
-    def direction(self, robot: TensegrityRobot) -> FloatArray:
-        """(2,) as `Goal` has it."""
-        return self.towards
+    def bearing(self, robot: TensegrityRobot) -> Bearing:
+        """As `Goal` has it."""
+        return Bearing(self.towards)
 
 
 @dataclass(frozen=True)
@@ -42,3 +51,8 @@ class Neighbour(Heading):
 
     face: int = -1
     """Index of the face to arrive on."""
+
+
+def unit(angle: float) -> FloatArray:
+    """(2,) unit vector at an angle from the world's x axis [rad]."""
+    return np.array([math.cos(angle), math.sin(angle)])

@@ -10,6 +10,7 @@ from tensegym.errors import InputError
 from tensegym.tables import fill
 
 from .bound import Bound
+from .navigate import Navigate
 from .roll import Roll
 from .step_onto import StepOnto
 from .task import Task
@@ -28,6 +29,8 @@ MOTIONS: dict[str, Motion] = {
     "climb": Motion(Roll, {"goal": Bound("speed_lps", True, 0.05), "slope": 10.0}),
     "cross": Motion(Roll, {"roughness": 0.02}),
     "carry": Motion(Roll, {"payload": 0.5}),
+    "steer": Motion(Navigate, {"goal": Bound("leg_speed", True, 0.28), "headings": 1.0}),
+    "places": Motion(Navigate, {"goal": Bound("places", True, 6.0)}),
 }
 
 

@@ -1,4 +1,4 @@
-"""Reward of rolling: way made along the wanted direction, less foot slip, less energy. Each term in rod lengths."""
+"""Reward of rolling: way made along the wanted direction, less foot slip, less energy, and places reached."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ class RewardWeights(Checked, error=DesignError):
     progress: float = bounded(0, 1e3, 1.0, "", "per rod length of the centre of mass along the wanted direction")
     slip: float = bounded(0, 1e3, 0.3, "", "per rod length of the path of the grounded feet's centres, their mean")
     energy: float = bounded(0, 1e3, 2e-4, "1/J", "of what the drives draw")
+    arrive: float = bounded(0, 1e3, 0.0, "", "per place reached, where there are places")
 
     def changed(self, weights: Mapping[str, Any]) -> RewardWeights:
         """A copy with some weights replaced. Raises DesignError naming one that there is not, or its range."""

@@ -96,7 +96,7 @@ def _drive(episode: Episode, controller: Controller, watcher: Watcher | None) ->
             episode.ended = GIVEN_UP
         if episode.ended:
             return
-        episode.advance(controller.angles(robot, episode.direction), substeps, watcher)
+        episode.advance(controller.angles(robot, episode.bearing), substeps, watcher)
     episode.ended = episode.ended or TIME_LIMIT
 
 

@@ -120,7 +120,7 @@ class Task(Checked, error=DesignError):
         """Stand the robot as an episode begins, settled. Raises SimulationError where that diverges."""
         robot.reset(start.face, start.heading)
         goal = self.aim(robot, start, rng)
-        robot.slope(math.radians(self.slope), goal.direction(robot))
+        robot.slope(math.radians(self.slope), goal.bearing(robot).direction)
         robot.step(round(self.settle / robot.dt))
         return goal
 

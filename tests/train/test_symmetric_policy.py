@@ -71,11 +71,11 @@ def test_the_observation_of_the_relabelled_robot_is_the_permuted_one(element, ki
         seen = []
         for h in (GROUP[0], g):
             env.robot.reset_rotated(START * Rotation.from_matrix(h.rotation).inv())
-            row = [env.observation.values(env.robot, read(env.robot), env.episode.direction)]
+            row = [env.observation.values(env.robot, read(env.robot), env.episode.bearing)]
             for action in np.random.default_rng(1).uniform(-1, 1, (steps, 6)):
                 env.robot.command((image(h, action) + 1) / 2 * env.robot.command_limit)
                 env.robot.step(150)
-                row.append(env.observation.values(env.robot, read(env.robot), env.episode.direction))
+                row.append(env.observation.values(env.robot, read(env.robot), env.episode.bearing))
             seen.append(np.array(row))
         np.testing.assert_allclose(seen[1], sign * seen[0][:, index], atol=1e-7)
         if element:
