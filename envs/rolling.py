@@ -55,8 +55,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
     Observation ``onboard``: rod axis (6 x 3) and turn rate across the axis (6 x 3, in 5 rad/s) in the heading frame,
     as an inertial unit on each rod reports them, then drive angle, speed and current.
 
-    Observations ``full-goal`` and ``onboard-goal`` end with three entries more: the distance to the place to go to, as a
-    part of 4 rod lengths and of 1, neither above 1 (the wanted direction points there), and 1 where it is to stop there.
+    Observations ``full-goal`` and ``onboard-goal`` end with three entries more: the distance to the place to go to, as
+    a part of 4 rod lengths and of 1, at most 1 (the wanted direction points there), and 1 where it is to stop there.
 
     With ``vary``, which maps fields of the design to ranges (see `tensegym.design.variation`), the robot is another one
     every ``episodes_per_design`` episodes and at every seeded reset: drawn uniformly, refused ones again. Either

@@ -13,6 +13,7 @@ import pytest
 
 import tensegym
 from tensegym.cli.main import COMMANDS
+from tensegym.control.bearing import Bearing
 from tensegym.control.commands_file import read_commands
 from tensegym.control.tipping import Pull, run_pull, subsets, tip_from, tip_table
 from tensegym.control.walker import Walker, load_table, save_table
@@ -225,15 +226,15 @@ def test_the_walker_holds_a_pull_to_its_end_and_pulls_deep_where_nothing_tips(ti
         robot.reset(0)
         walker = Walker(tips)
         walker.begin(robot)
-        first = walker.angles(robot, np.array([1.0, 0.0]))
+        first = walker.angles(robot, Bearing(np.array([1.0, 0.0])))
         assert first.max() > 0
         robot.step(100)
-        np.testing.assert_array_equal(walker.angles(robot, np.array([-1.0, 0.0])), first)
+        np.testing.assert_array_equal(walker.angles(robot, Bearing(np.array([-1.0, 0.0]))), first)
         robot.time += 2.0
-        assert walker.angles(robot, np.array([1.0, 0.0])).max() == 0  # the release
+        assert walker.angles(robot, Bearing(np.array([1.0, 0.0]))).max() == 0  # the release
         robot.reset(7)
         walker.begin(robot)
-        assert walker.angles(robot, np.array([1.0, 0.0])).max() == pytest.approx(robot.command_limit[0])
+        assert walker.angles(robot, Bearing(np.array([1.0, 0.0]))).max() == pytest.approx(robot.command_limit[0])
 
 
 def test_all_faces_writes_the_walkers_table(tips, cli, tmp_path, monkeypatch):

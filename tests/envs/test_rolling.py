@@ -297,7 +297,7 @@ def test_a_payload_env_observes_36_tensions():
         ({"dt": 0.0}, r"dt = 0.0 is outside \[1e-06, 0.004\] s"),
         ({"dt": math.nan}, r"dt = nan is no finite number"),
         ({"settle": -0.1}, r"settle = -0.1 is outside \[0, 60\] s"),
-        ({"reward": {"speed": 1.0}}, "unknown field 'speed' in reward; one of energy, progress, slip"),
+        ({"reward": {"speed": 1.0}}, "unknown field 'speed' in reward; one of arrive, energy, progress, slip"),
         ({"reward": {"slip": -1.0}}, r"reward.slip = -1.0 is outside \[0, 1000\]"),
         ({"reward": {"slip": math.nan}}, "reward.slip = nan is no finite number"),
         ({"reward": {"slip": "much"}}, "reward.slip = 'much' is a text, no number"),

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tensegym.control.bearing import Bearing
 from tensegym.control.table import make_controller, with_defaults
 from tensegym.control.tipping import Pull, Tip
 from tensegym.control.walker import Walker, WalkerSettings
@@ -13,7 +14,7 @@ from tensegym.search.evaluate import run_trial, try_all
 from tensegym.search.loop import _trial
 
 PLAYED = 'kind = "walker"\ndepth = 0.9'
-AHEAD = np.array([1.0, 0.0])
+AHEAD = Bearing(np.array([1.0, 0.0]))
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import tensegym.search.evaluate as module
+from tensegym.control.bearing import Bearing
 from tensegym.control.cpg import Cpg, CpgController, drive_kinds, fitted_feedback
 from tensegym.design.design import RobotDesign
 from tensegym.design.symmetry import symmetries
@@ -14,7 +15,7 @@ from tensegym.robot.robot import TensegrityRobot
 from tensegym.search.evaluate import TrialSpec, evaluate, run_trial, try_all
 from tensegym.tasks.roll import Roll
 
-AHEAD = np.array([1.0, 0.0])
+AHEAD = Bearing(np.array([1.0, 0.0]))
 
 
 @pytest.fixture
@@ -68,17 +69,17 @@ def test_commands_turn_with_the_robot():
     with TensegrityRobot(design, dt=4e-3) as robot:
         robot.reset(2, 0.3)
         robot.step(40)
-        direction = np.array([0.6, 0.8])
+        bearing = Bearing(np.array([0.6, 0.8]))
         generator = CpgController()
         generator.begin(robot)
-        angles = generator.angles(robot, direction)
+        angles = generator.angles(robot, bearing)
         turned = []
         for symmetry in symmetries(design):
             # the same pose with the names of the nodes exchanged
             nodes = robot.node_positions_in_world()[np.argsort(symmetry.nodes)]
             generator.begin(robot)
             robot.node_positions_in_world = lambda nodes=nodes: nodes  # type: ignore[method-assign]
-            turned.append(generator.angles(robot, direction)[symmetry.drives])
+            turned.append(generator.angles(robot, bearing)[symmetry.drives])
             del robot.node_positions_in_world
     assert len(turned) == 3
     assert np.ptp(angles) > 1
