@@ -20,8 +20,10 @@ class Goal:
         raise NotImplementedError
 
     def update(self, robot: TensegrityRobot, way: float, seconds: float) -> None:
-        """Look at the robot after a control step of so many seconds, in which it `made` so much way [m]; the bearing may
-        be another from now on."""
+        """Look at the robot after a control step of so many seconds, in which it `made` so much way [m].
+
+        The bearing may be another from now on.
+        """
 
     def made(self, bearing: Bearing, before: FloatArray, after: FloatArray) -> float:
         """Way made towards what a bearing wanted [m], by a centre of mass that went from one place (2,) to another."""
