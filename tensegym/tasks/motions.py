@@ -10,6 +10,7 @@ from tensegym.errors import InputError
 from tensegym.tables import fill
 
 from .bound import Bound
+from .follow import Follow
 from .navigate import Navigate
 from .roll import Roll
 from .step_onto import StepOnto
@@ -31,6 +32,7 @@ MOTIONS: dict[str, Motion] = {
     "carry": Motion(Roll, {"payload": 0.5}),
     "steer": Motion(Navigate, {"goal": Bound("leg_speed", True, 0.28), "headings": 1.0}),
     "places": Motion(Navigate, {"goal": Bound("places", True, 6.0)}),
+    "path": Motion(Follow),
 }
 
 
