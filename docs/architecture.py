@@ -18,7 +18,8 @@ HERE = Path(__file__).parent
 PLACES = {  # of each shelf: column, row from below, what stands there
     "structure": (0.0, 1.0, "a tensegrity at rest"),
     "flexure": (1.2, 1.0, "hinges, FEM, joint models"),
-    "bullet": (2.4, 1.0, "the engine"),
+    "engine": (1.2, 3.5, "what a robot needs of one"),
+    "bullet": (2.4, 4.0, "PyBullet"),
     "design": (0.5, 2.0, "a robot as data"),
     "flexible": (3.1, 3.8, "flexures in any URDF"),
     "physics": (0.5, 3.0, "the compiled substep"),
@@ -33,7 +34,7 @@ PLACES = {  # of each shelf: column, row from below, what stands there
 }
 TOOLS = ("errors", "arrays", "files", "compiled", "tables", "report", "plotting", "processes")
 WALKS = {  # the shelves that a walk enters, in order, as docs/architecture.md tells them
-    "one action": ("#1f77b4", ("envs", "tasks", "robot", "physics", "bullet")),
+    "one action": ("#1f77b4", ("envs", "tasks", "robot", "engine", "physics", "bullet")),
     "one hinge": ("#2ca02c", ("cli", "flexure", "flexible")),
     "one design": ("#ff7f0e", ("design", "structure", "physics", "robot")),
     "one trial": ("#d62728", ("search", "tasks", "control", "robot")),
@@ -44,7 +45,7 @@ ACTION = (
     ("poses (6, 7) from the engine", "bullet/"),
     ("lengths, rates of change", "physics/geometry.py"),
     ("tensions", "physics/cable_law.py"),
-    ("a force and a moment a body", "physics/rod_rotation.py"),
+    ("a force and a moment a body", "engine/leapfrog.py"),
     ("drives wind their cables", "physics/drives.py"),
     ("into the engine, one time step", "bullet/"),
     ("reading: nodes, centre, energies", "robot/reading.py"),

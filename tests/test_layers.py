@@ -12,8 +12,8 @@ import pytest
 ROOT = Path(__file__).parents[1]
 SHELVES = (  # each may import from itself and from those before it
     "errors", "arrays", "files", "compiled", "tables", "report", "plotting", "processes",
-    "flexure", "structure", "design", "physics", "bullet", "robot", "flexible", "control", "tasks", "envs", "urdf",
-    "train", "search", "validation", "tensegym", "cli", "__main__",
+    "flexure", "structure", "design", "physics", "engine", "bullet", "robot", "flexible", "control", "tasks", "envs",
+    "urdf", "train", "search", "validation", "tensegym", "cli", "__main__",
 )  # fmt: skip
 ENGINE = ("pybullet", "pybullet_data", "ctypes", "llvmlite.binding")  # with its C interface and its memory
 LINKED = ("envs", "train", "urdf")

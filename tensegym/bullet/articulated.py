@@ -1,4 +1,4 @@
-"""Articulated: a body of many links in a world."""
+"""Articulated: a body of many links in a client."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from tensegym.arrays import FloatArray
 from tensegym.errors import SimulationError
 
 from .bodies import FIXED, joint_kind, load_body
+from .client import Client
 from .engine import captured, pybullet
-from .world import World
 
 
 class Articulated:
-    """A body of many links in a world, its joints free: motors and the engine's damping off, no sleeping.
+    """A body of many links in a client, its joints free: motors and the engine's damping off, no sleeping.
 
     Rows of per-link arrays are the base, then the links in the engine's order; columns of per-joint arrays are the
     joints that move, in that order. Revolute and prismatic joints only.
@@ -24,7 +24,7 @@ class Articulated:
     Raises SimulationError, with what the engine says, for a file that it cannot load.
     """
 
-    def __init__(self, world: World, urdf: Path, pose: Sequence[float], friction: float, fixed_base: bool) -> None:
+    def __init__(self, world: Client, urdf: Path, pose: Sequence[float], friction: float, fixed_base: bool) -> None:
         self.world, self.client = world, world.client
         body = None
         with captured() as said, suppress(SimulationError):

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
-from tensegym.bullet import Articulated, World
+from tensegym.bullet import Articulated, Client
 from tensegym.errors import FlexureError
 from tensegym.flexure.hinge.ranges import check_choice, check_not_negative, check_positive, finite_array
 from tensegym.physics.readings import Energies
@@ -72,7 +72,7 @@ class FlexibleRobot:
         self.gravity, self.base_pose = finite_array(gravity, "gravity", 3), finite_array(pose, "pose", 7)
         self.flexures: dict[str, FlexureJoint] = {}
         self.loads: list[Load] = []
-        self.world = World(dt, 0.0, gui)
+        self.world = Client(dt, 0.0, gui)
         self.world.set_gravity(self.gravity.tolist())
         if ground:
             self.world.add_ground(friction)

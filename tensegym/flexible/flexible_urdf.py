@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tensegym.arrays import FloatArray
-from tensegym.bullet import Articulated, World
+from tensegym.bullet import Articulated, Client
 from tensegym.errors import FlexureError
 
 from .urdf_audit import audit
@@ -54,7 +54,7 @@ class FlexibleUrdf:
         put_chain(self._root, joint, chain)
         self.chains[name] = chain.names(name)
 
-    def load(self, world: World, friction: float) -> Articulated:
+    def load(self, world: Client, friction: float) -> Articulated:
         """Load it at the origin, where the engine's link frames lose least."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / self.path.name

@@ -6,8 +6,8 @@
     geometry.py        lengths, directions and moment arms of springs
     cable_law.py       the force law, explicit and implicit
     mobility.py        what unit tensions do to the rates of all lengths
-    rod_rotation.py    turning of thin rods without drift
-    split_rods.py      rods of two halves that a pin joins; split_rod_step.py their step
+    spin.py            the damping of rods that spin about their axes
+    split_rods.py      rods of two halves that a pin joins
     drives.py          winch drives
     terrain.py         the ground
     readings.py        velocities, momentum and energies from the arrays

@@ -111,7 +111,9 @@ class Out(NamedTuple):
     """What a substep writes and does not read from the one before: its result and, after it, its workspace."""
 
     wrenches: FloatArray
-    """(b, 6) force [N] and moment about the centre [N m] for the engine, world axes."""
+    """(b, 6) force [N] and moment about the centre [N m], world axes."""
+    velocities: FloatArray
+    """(b, 6) linear [m/s] and angular [rad/s], over the last step."""
     rotations: FloatArray
     """(b, 3, 3) rotation matrices, body to world."""
     directions: FloatArray
@@ -165,6 +167,7 @@ def new_out(model: Model) -> Out:
     padded = BLOCK * -(-springs // BLOCK)
     return Out(
         wrenches=np.zeros((bodies, 6)),
+        velocities=np.zeros((bodies, 6)),
         rotations=np.zeros((bodies, 3, 3)),
         directions=np.zeros((springs, 3)),
         moment_arms=np.zeros((springs, 2, 3)),

@@ -1,4 +1,7 @@
-"""The kernel of a substep: from poses to one force and one moment a body, drives and the running totals, compiled."""
+"""The kernel of a substep: from poses to one force and one moment a body, drives and the running totals, compiled.
+
+Which engine steps the bodies, and what it does wrong in that, it does not know.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +13,7 @@ from .cable_law import explicit_tensions, implicit_tensions, tension_wrenches
 from .drives import CURRENT, PULLED, VOLTAGE, drive_step
 from .geometry import points_in_world, spring_geometry
 from .model import CENTRE_PATH, DRIVE_WORK, ELECTRICAL_ENERGY, FOOT_PATH, FOOT_PATH_SUM
-from .rod_rotation import turn_bodies
-from .split_rod_step import step_split_rods
+from .spin import damp_spins
 from .split_rods import second_poses, split_rod_inertia
 from .terrain import distance_to_ground
 from .vectors import KERNEL
@@ -21,8 +23,8 @@ GROUND_TOLERANCE = 1e-3  # m; a foot whose gap to the ground is below this is gr
 
 @kernel(**KERNEL)
 def substep(model, ground, state, out, dt, implicit):
-    """Geometry, tensions, wrenches, drives, totals: ``state`` is updated, ``out`` written; out.wrenches are for the
-    engine.
+    """Geometry, tensions, wrenches, drives, totals: ``state`` is updated, ``out`` written; out.wrenches act on the
+    bodies.
 
     model, state, out: see model.py. ground: a terrain.Ground. dt [s]. implicit: which tensions, see cable_law.py.
     """
@@ -42,8 +44,7 @@ def substep(model, ground, state, out, dt, implicit):
         explicit_tensions(model.spring_params, state.lengths, state.rates, state.natural, tensions)
 
     tension_wrenches(model.spring_bodies, out, tensions)
-    turn_bodies(model, state, dt, out)
-    step_split_rods(model, state, dt, out)
+    damp_spins(model, state, dt, out)
     _wind(model, state, out, dt)
     _add_paths(model, ground, state, out)
     poses, last_poses = state.poses, state.last_poses

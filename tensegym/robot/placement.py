@@ -1,36 +1,26 @@
-"""A design's bodies placed in a world: loaded there, stood on the ground."""
+"""A design's bodies where they are to stand: made in the air, then on the ground."""
 
 from __future__ import annotations
-
-import tempfile
-from pathlib import Path
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
-from tensegym.bullet import World, packaged_urdf
+from tensegym.design.bodies import design_bodies
 from tensegym.design.design import RobotDesign
-from tensegym.design.urdf_writer import rod_files, urdf_files
+from tensegym.engine import Scene
 from tensegym.physics.geometry import points_at
 from tensegym.physics.model import PIN_AXIS, Model
+from tensegym.physics.terrain import Ground
 
 
-def load_bodies(world: World, design: RobotDesign, poses: FloatArray) -> None:
-    """Load rods and payload at ``poses`` (b, 7), but far above the ground, so that nothing is in contact."""
-    texts = urdf_files(design)
-    names = rod_files(design) + (["payload.urdf"] if design.payload else [])
-    with tempfile.TemporaryDirectory() as folder:
-        paths: dict[str, Path] = {}
-        for name, text in texts.items():
-            shipped = packaged_urdf(name)
-            if shipped and shipped.read_text() == text:
-                paths[name] = shipped
-            else:
-                paths[name] = Path(folder) / name
-                paths[name].write_text(text)
-        for name, pose in zip(names, poses[: len(names)], strict=True):
-            world.load(paths[name], [pose[0], pose[1], pose[2] + 10, *pose[3:]], design.friction)
+def robot_scene(design: RobotDesign, model: Model, dt: float, ground: Ground | None) -> Scene:
+    """Rods and payload as they stand, but far above the ground, so that nothing is in contact; no gravity without a
+    ground."""
+    bodies = design_bodies(design)
+    poses = model.rest_poses[: len(bodies)].copy()
+    poses[:, 2] += 10
+    return Scene(bodies, poses, dt, design.friction, design.gravity if ground else 0.0, ground)
 
 
 def reach(model: Model) -> float:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from tensegym.arrays import FloatArray
 from tensegym.physics.geometry import points_at
 
+from .engines import camera_of
 from .robot import TensegrityRobot
 
 _TENSION_COLOURS = np.array([[150, 150, 150], [40, 120, 220], [240, 190, 30], [220, 40, 30]], dtype=float)
@@ -37,7 +38,7 @@ def render(robot: TensegrityRobot, width: int = 480, height: int = 360, yaw: flo
     target = np.array([centre[0], centre[1], 0.35 * robot.design.length])
     distance = 3.0 * robot.design.length
     eye = target + distance * np.array([np.cos(yaw) * 0.9, np.sin(yaw) * 0.9, 0.45])
-    rgb, clip = robot.world.camera.image(eye.tolist(), target.tolist(), width, height)
+    rgb, clip = camera_of(robot.world).image(eye.tolist(), target.tolist(), width, height)
     image = rgb.copy()
     ends = cable_ends_in_world(robot)
     pixels = _project(ends.reshape(-1, 3), clip, width, height).reshape(-1, 2, 2)
@@ -51,8 +52,9 @@ def render(robot: TensegrityRobot, width: int = 480, height: int = 360, yaw: flo
 def draw_in_window(robot: TensegrityRobot) -> None:
     """Draw the cables into PyBullet's own window and let the camera follow."""
     colours = [[c / 255 for c in tension_colour(t)] for t in robot.tensions]
-    robot.world.camera.draw_lines(cable_ends_in_world(robot), colours)
-    robot.world.camera.look_at(robot.centre_of_mass_in_world(), 3.0 * robot.design.length)
+    camera = camera_of(robot.world)
+    camera.draw_lines(cable_ends_in_world(robot), colours)
+    camera.look_at(robot.centre_of_mass_in_world(), 3.0 * robot.design.length)
 
 
 def _project(points: FloatArray, clip: FloatArray, width: int, height: int) -> FloatArray:

@@ -10,40 +10,38 @@ from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
-from tensegym.bullet import World
 from tensegym.design.design import RobotDesign
 from tensegym.errors import DesignError, SimulationError
-from tensegym.physics import substep as kernel
 from tensegym.physics.drives import COMMAND
 from tensegym.physics.model import Model
 from tensegym.physics.robot_arrays import explicit_step_limit, robot_model, spin_step_limit
 from tensegym.physics.terrain import FLAT, Ground, Terrain
 from tensegym.structure.faces import resting_rotation
 
-from .compiled_loop import run
-from .placement import load_bodies, pin_rates, placed, reach
+from .engines import open_world
+from .placement import pin_rates, placed, reach, robot_scene
 from .robot_state import RobotState
 
 Integrator = Literal["auto", "explicit", "implicit"]
 LEAST_TIME_STEP, LARGEST_TIME_STEP = 1e-6, 4e-3  # s; at 5 ms feet and rods in contact make energy, at 4 ms none did
-_MOST_AT_ONCE = 1000  # compiled substeps, some 20 ms of them, between two looks at signals such as Ctrl-C
+_MOST_AT_ONCE = 1000  # substeps, some 20 ms of them, between two looks at signals such as Ctrl-C
 SPEED_BOUND = 50.0  # m/s; nothing on these robots moves so fast unless the integration has diverged
 
 
 class TensegrityRobot(RobotState):
-    """A design in a PyBullet world, with its cables and drives; RobotState has its readings.
+    """A design in an engine's world, with its cables and drives; RobotState has its readings.
 
-    A context manager; `close` frees the physics client.
+    A context manager; `close` frees the engine.
 
     dt is the physics time step [s]. ground: the plane z = 0, none and no gravity, or a Terrain, flat where the robot
     starts. ``integrator`` picks explicit or linearly implicit cable forces; "auto" takes
     explicit ones where dt is within their stability limit. Raises DesignError for a dt no integrator holds.
-    ``compiled`` picks the substep loop, see World: both give the same bits.
+    ``engine``, ``gui`` and ``compiled``: see `tensegym.robot.engines.open_world`.
     """
 
     def __init__(
         self, design: RobotDesign | None = None, *, dt: float = 1e-3, ground: bool | Terrain = True,
-        integrator: Integrator = "auto", gui: bool = False, compiled: bool | None = None,
+        integrator: Integrator = "auto", gui: bool = False, compiled: bool | None = None, engine: str = "pybullet",
     ) -> None:  # fmt: skip
         design = design or RobotDesign()
         if not LEAST_TIME_STEP <= dt <= LARGEST_TIME_STEP:
@@ -58,12 +56,8 @@ class TensegrityRobot(RobotState):
         surface = FLAT
         if isinstance(ground, Terrain):
             surface = Ground(ground.heights(reach(model)), ground.cell)
-        world = World(dt, design.gravity if ground else 0.0, gui, compiled)
-        load_bodies(world, design, model.rest_poses)
-        if ground:
-            world.add_ground(design.friction, surface.heights, surface.cell)
-        self._pristine = world.save()
-        super().__init__(design, model, surface, world, dt)
+        scene = robot_scene(design, model, dt, surface if ground else None)
+        super().__init__(design, model, surface, open_world(engine, scene, gui, compiled), dt)
         self.reset()
 
     def close(self) -> None:
@@ -100,12 +94,7 @@ class TensegrityRobot(RobotState):
         poses = placed(self.model, rotation)
         moving = np.zeros((len(poses), 6)) if velocities is None else velocities
         rates = pin_rates(self.model, rotation, moving)
-        self.world.restore(self._pristine)
-        if len(rates):
-            # restoring leaves something of the last step in bodies of two links; a step in the air takes it out
-            self.world.advance()
-            self.world.restore(self._pristine)
-        self.world.place(poses, moving, rates=rates)
+        self.world.restart(poses, moving, rates)
         self._restart(rates, velocities)
 
     def push(self, velocity: ArrayLike) -> None:
@@ -134,8 +123,9 @@ class TensegrityRobot(RobotState):
 
     def step(self, substeps: int = 1) -> None:
         """Advance by ``substeps`` time steps. Raises SimulationError when the simulation has diverged."""
-        with self.world.stepping():
-            self._advance(substeps)
+        for first in range(0, substeps, _MOST_AT_ONCE):
+            self.world.run(min(substeps - first, _MOST_AT_ONCE), self.model, self._ground, self._state, self._out,
+                           self.dt, self.implicit)  # fmt: skip
         self.time += substeps * self.dt
         if self._ground.rough:
             self._check_ground()
@@ -151,19 +141,6 @@ class TensegrityRobot(RobotState):
         if row >= len(pairs):
             return f"the payload's cable of rod {'-'.join(map(str, structure.rods[row - len(pairs)] + 1))}"
         return f"{'cable' if row < len(structure.cables) else 'stiff cable'} {'-'.join(map(str, pairs[row] + 1))}"
-
-    def _advance(self, substeps: int) -> None:
-        world, arguments = self.world, (self.model, self._ground, self._state, self._out, self.dt, self.implicit)
-        if world.compiled:
-            for first in range(0, substeps, _MOST_AT_ONCE):
-                count = min(substeps - first, _MOST_AT_ONCE)
-                if run(count, world.hand_over(), *arguments) < count:
-                    raise SimulationError("the robot's world is closed, or a body is gone from it")
-        else:
-            for _ in range(substeps):
-                world.read()
-                kernel.substep(*arguments)
-                world.step(self._out.wrenches)
 
     def _check_ground(self) -> None:
         """Raise SimulationError for a foot that is lost: other than a plane, bumps have an edge, and an underside."""

@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 
 from tensegym.arrays import FloatArray
-from tensegym.bullet import World
 from tensegym.design.design import RobotDesign
+from tensegym.engine import World
 from tensegym.physics.drives import ROTOR_ANGLE
 from tensegym.physics.geometry import points_at
 from tensegym.physics.model import STIFFNESS, Model, new_out, new_state
@@ -36,7 +36,7 @@ class RobotState:
 
     def __init__(self, design: RobotDesign, model: Model, ground: Ground, world: World, dt: float) -> None:
         self.design, self.model, self.world, self.dt = design, model, world, dt
-        self.gravity = np.array([0.0, 0.0, -design.gravity if world.ground is not None else 0.0])
+        self.gravity = np.array([0.0, 0.0, -world.scene.gravity])
         self.time = 0.0
         self._ground, self._out = ground, new_out(model)
         self._state = state = new_state(model, world.poses, world.angles)
@@ -152,7 +152,7 @@ class RobotState:
 
     def foot_contacts(self) -> FloatArray:
         """(n,) 1.0 where a foot is within a millimetre of the ground, else 0.0."""
-        if self.world.ground is None:
+        if self.world.scene.ground is None:
             return np.zeros(len(self.model.node_bodies))
         gap = self.heights_of(self.node_positions_in_world()) - self.model.foot_radii
         return (gap <= GROUND_TOLERANCE).astype(float)

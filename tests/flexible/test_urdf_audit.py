@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tensegym.bullet import Articulated, World
+from tensegym.bullet import Articulated, Client
 from tensegym.errors import FlexureError, SimulationError
 from tensegym.flexible import FlexibleRobot, FlexureJoint
 from tensegym.flexure import Box
@@ -169,7 +169,7 @@ def test_the_inertia_of_a_flat_body_stays_what_it_is(turned, tmp_path):
 
 
 def test_the_engine_writes_nothing_past_python(capfd, tmp_path):
-    world, pose = World(1e-3, 0.0), (0, 0, 0, 0, 0, 0, 1)
+    world, pose = Client(1e-3, 0.0), (0, 0, 0, 0, 0, 0, 1)
     body = Articulated(world, CASES / "tool0.urdf", pose, 0.5, False)
     assert "No inertial data for link" in body.said and "tool0" in body.said and "\n" not in body.said
     with pytest.raises(SimulationError, match=r"PyBullet cannot load missing.urdf: .*nope.obj"):

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from tensegym.engine import GROUND
 from tensegym.errors import DesignError, SimulationError
 from tensegym.physics.terrain import FLAT, Ground, Terrain, distance_to_ground, distances_to_ground
 from tensegym.robot.gait import GaitMeter
@@ -79,12 +80,11 @@ def test_a_robot_at_rest_on_bumps_stays_and_does_not_slip(settled):
 def test_foot_contacts_are_those_of_the_engine(settled):
     world, feet = settled.world, settled.node_positions_in_world()
     loaded = np.zeros(len(feet))
-    for row in world.contacts():
-        if (row[1] != world.ground and row[2] != world.ground) or row[9] <= 0:
+    for contact in world.contacts():
+        if contact.other != GROUND or contact.push <= 0:
             continue
-        point = np.array(row[5] if row[1] == world.ground else row[6])  # on the ground
-        assert abs(settled.heights_of(point[None])[0]) < 1e-4
-        near = np.linalg.norm(feet - point, axis=1)
+        assert abs(settled.heights_of(contact.place[None])[0]) < 1e-4
+        near = np.linalg.norm(feet - contact.place, axis=1)
         assert near.min() < 1.1 * settled.model.foot_radii[0]
         loaded[near.argmin()] = 1.0
     assert loaded.sum() >= 3

@@ -70,7 +70,7 @@ def test_weight_is_carried_at_rest():
     with TensegrityRobot(RobotDesign(spin_damping=1e-3)) as robot:
         robot.reset(0)
         robot.step(4000)
-        normal = sum(contact[9] for contact in robot.world.contacts())
+        normal = sum(contact.push for contact in robot.world.contacts())
         assert normal == pytest.approx(robot.design.mass * 9.81, rel=0.05)
 
 

@@ -1,22 +1,24 @@
 """The substep loop in compiled code from end to end: states out of the engine, the force kernel, forces in, the step.
 
-What `World.read`, the kernel and `World.step` do in turn, and to the same bits.
+What `World.run` does in turn in Python, and to the same bits.
 """
 
 from __future__ import annotations
 
-from tensegym.bullet.c_interface import client_handle, push_and_step, read_states
 from tensegym.compiled import kernel
+from tensegym.engine.leapfrog import leapfrog
 from tensegym.physics.substep import substep
 from tensegym.physics.vectors import ALLOCATING
+
+from .c_interface import client_handle, push_and_step, read_states
 
 
 @kernel(**ALLOCATING)
 def run(count, engine, model, ground, state, out, dt, implicit):
     """Take ``count`` time steps of a DIRECT client; returns how many were taken.
 
-    engine: what `World.hand_over` gives; the rest as for `substep`. Fewer steps than asked for mean that the client,
-    or a body in it, is gone.
+    engine: what `BulletWorld.hand_over` gives; the rest as for `substep`. Fewer steps than asked for mean that
+    the client, or a body in it, is gone.
     """
     handle = client_handle(engine.client, engine.body_count)
     if handle == 0:
@@ -25,5 +27,6 @@ def run(count, engine, model, ground, state, out, dt, implicit):
         if not read_states(handle, engine.window, engine.body_ids, engine.two_link_rows, state.poses, state.angles):
             return done
         substep(model, ground, state, out, dt, implicit)
+        leapfrog(model, state, out, dt)
         push_and_step(handle, engine.body_ids, engine.two_link_rows, state.poses, out.wrenches)
     return count

@@ -1,7 +1,7 @@
 """Turning of thin rods, to second order and without drift.
 
-Bullet steps the gyroscopic term by explicit Euler, which gives a spinning rod energy and angular momentum in proportion
-to dt. The kernel knows that update, so it commands the torque that makes the step come out as leapfrog does:
+Both engines step the gyroscopic term by explicit Euler, which gives a spinning rod energy and angular momentum in
+proportion to dt. The kernel knows that update, so it commands the torque that makes the step come out as leapfrog does:
 L(n + 1/2) = L(n - 1/2) + dt torque(n), with L = I(axis at the half step) w. That conserves angular momentum exactly and
 the spin of a free rod too.
 """
@@ -9,16 +9,16 @@ the spin of a free rod too.
 from __future__ import annotations
 
 from tensegym.compiled import kernel
-
-from .model import INVERSE_AXIAL, INVERSE_TRANSVERSE, SPIN_DAMPING
-from .vectors import KERNEL, angular_velocity, cross, dot, sine_ratios, turn
+from tensegym.physics.model import INVERSE_AXIAL, INVERSE_TRANSVERSE
+from tensegym.physics.vectors import KERNEL, cross, dot, sine_ratios, turn
 
 
 @kernel(**KERNEL)
-def bullet_gyroscopic_change(w, axis, across, along, dt):
-    """What Bullet adds to the angular velocity w (3,) for the gyroscopic term, world axes.
+def gyroscopic_change(w, axis, across, along, dt):
+    """What an engine adds to the angular velocity w (3,) for the gyroscopic term, world axes.
 
-    Explicit Euler, -dt I^-1 (w x I w), which for moments ``across`` and ``along`` ``axis`` is this closed form.
+    Explicit Euler, -dt I^-1 (w x I w), which for moments ``across`` and ``along`` ``axis`` is this closed form. (MuJoCo
+    takes it in body axes; turning by w leaves w as it is, so that in world axes the step is the same.)
     """
     x, y, z = cross(w, axis)
     factor = dt * dot(w, axis) * (across - along) / across
@@ -26,24 +26,19 @@ def bullet_gyroscopic_change(w, axis, across, along, dt):
 
 
 @kernel(**KERNEL)
-def turn_bodies(model, state, dt, out):
-    """Replace the moments in out.wrenches by those that make Bullet take a leapfrog step under them.
-
-    Adds the damping of the spin about each body's axis first; halves of split rods get nothing else here, see
-    split_rod_step.py.
-    """
+def turn_rods(model, dt, out):
+    """Replace the moments in out.wrenches by those that make the engine take a leapfrog step under them; not of halves
+    of split rods, see split_rod_step.py."""
     params = model.body_params
     for b in range(len(params)):
         across, along = 1 / params[b, INVERSE_TRANSVERSE], 1 / params[b, INVERSE_AXIAL]
-        w = angular_velocity(state.poses[b], state.last_poses[b], dt)
-        axis = out.rotations[b, 0, 2], out.rotations[b, 1, 2], out.rotations[b, 2, 2]
-        moment = out.wrenches[b, 3:]
-        for i in range(3):
-            moment[i] -= params[b, SPIN_DAMPING] * dot(w, axis) * axis[i]
         if model.other_half[b] >= 0 or across == along:
             continue  # split, or a ball, which has no gyroscopic term
+        w = out.velocities[b, 3], out.velocities[b, 4], out.velocities[b, 5]
+        axis = out.rotations[b, 0, 2], out.rotations[b, 1, 2], out.rotations[b, 2, 2]
+        moment = out.wrenches[b, 3:]
         new = _leapfrog(w, axis, across, along, dt, moment)
-        engine = bullet_gyroscopic_change(w, axis, across, along, dt)
+        engine = gyroscopic_change(w, axis, across, along, dt)
         change = new[0] - w[0] - engine[0], new[1] - w[1] - engine[1], new[2] - w[2] - engine[2]
         part = (along - across) * dot(change, axis)
         for i in range(3):

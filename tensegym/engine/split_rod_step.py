@@ -1,8 +1,8 @@
 """A leapfrog step of split rods, without drift, compiled.
 
-PyBullet's explicit velocity terms let a multibody's momentum drift, so here, as for whole rods (rod_rotation.py), the
-kernel commands what makes the engine's step come out as leapfrog does. With P(n + 1/2) the momenta of both halves and
-T(n) the motions that the pin allows,
+Explicit velocity terms, as both engines have them, let a rod's momentum drift, so here, as for whole rods
+(rod_rotation.py), the kernel commands what makes the engine's step come out as leapfrog does. With P(n + 1/2) the
+momenta of both halves and T(n) the motions that the pin allows,
 
     T(n)^T (P(n + 1/2) - P(n - 1/2)) = dt T(n)^T (forces and moments on the halves),
 
@@ -17,10 +17,9 @@ from __future__ import annotations
 import numpy as np
 
 from tensegym.compiled import kernel
-
-from .model import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE
-from .split_rods import add_generalised, inertia_times
-from .vectors import ALLOCATING, KERNEL, angular_velocity, cross, dot, turn
+from tensegym.physics.model import INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE
+from tensegym.physics.split_rods import add_generalised, inertia_times
+from tensegym.physics.vectors import ALLOCATING, KERNEL, cross, dot, turn
 
 _MOST_ITERATIONS, _TOLERANCE = 20, 1e-12  # changes of a velocity over (1 + the fastest); each is 1e-2 of the last
 
@@ -65,10 +64,10 @@ def step_split_rods(model, state, dt, out):
         goal[:] = 0.0
         for side in range(2):
             row = model.pin_bodies[p, side]
-            spin = angular_velocity(state.poses[row], state.last_poses[row], dt)
+            spin = out.velocities[row, 3], out.velocities[row, 4], out.velocities[row, 5]
             momentum = _spin_momentum(params[row], z1 if side == 0 else z2, spin, -0.5 * dt)
             for i in range(3):
-                v[i] = (state.poses[row, i] - state.last_poses[row, i]) / dt
+                v[i] = out.velocities[row, i]
                 if side == 0:
                     old[i], old[3 + i] = v[i], spin[i]
                 v[i] = v[i] / params[row, INVERSE_MASS] + dt * wrenches[row, i]

@@ -1,4 +1,4 @@
-"""The kernel's model of Bullet's own turning, and what it makes of it."""
+"""The kernel's model of the engines' own turning, and what it makes of it."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from tensegym.design.design import RobotDesign
-from tensegym.physics.rod_rotation import bullet_gyroscopic_change
+from tensegym.engine.rod_rotation import gyroscopic_change
 from tensegym.physics.vectors import angular_velocity, arcsine_ratio, sine_ratios, turn
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.structure.structure import Structure, six_rod
@@ -22,7 +22,7 @@ def test_closed_form_of_the_gyroscopic_step(seed, w):
     inertia, dt = np.array([0.02, 0.02, 5e-6]), 1e-3
     local = turn.inv().apply(w)
     expected = turn.apply(-dt * np.cross(local, inertia * local) / inertia)
-    out = bullet_gyroscopic_change(w, turn.as_matrix()[:, 2].copy(), 0.02, 5e-6, dt)
+    out = gyroscopic_change(w, turn.as_matrix()[:, 2].copy(), 0.02, 5e-6, dt)
     np.testing.assert_allclose(out, expected, atol=1e-9)
 
 
@@ -54,7 +54,7 @@ def test_turned_is_the_rotation_by_w_times_time(seed, w, time):
 
 @pytest.mark.parametrize("rate", [(8.0, 0.0, 8.0), (3.0, 2.0, 20.0)])
 def test_a_lone_spinning_rod_keeps_energy_momentum_and_spin(rate):
-    """Bullet alone, with explicit Euler, gains energy here; the kernel takes that out."""
+    """The engine alone, with explicit Euler, gains energy here; the kernel takes that out."""
     whole = six_rod()
     nodes = whole.nodes.copy()
     for i, rod in enumerate(whole.rods):

@@ -1,0 +1,13 @@
+"""What a robot needs of an engine, and nothing of any engine.
+
+    scene.py           Scene: what stands in a world
+    world.py           World: the protocol that engines implement, and a contact of it
+    leapfrog.py        what makes an engine's explicit step one of the leapfrog; rod_rotation.py and split_rod_step.py
+
+`tensegym.bullet` and `tensegym.mujoco` implement it; `tensegym.robot.engines` picks one by name.
+"""
+
+from .scene import Scene
+from .world import GROUND, Contact, State, World
+
+__all__ = ["GROUND", "Contact", "Scene", "State", "World"]

@@ -1,0 +1,46 @@
+"""The engines by name. A robot, and all above it, asks here and knows none of them."""
+
+from __future__ import annotations
+
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from tensegym.bullet import BulletWorld
+from tensegym.bullet.camera import Camera
+from tensegym.engine import Scene, World
+from tensegym.errors import DesignError
+from tensegym.tables import show
+
+ENGINES = ("pybullet",)
+_PICTURED: WeakKeyDictionary[World, BulletWorld] = WeakKeyDictionary()
+
+
+def open_world(engine: str, scene: Scene, gui: bool = False, compiled: bool | None = None) -> World:
+    """The scene in an engine.
+
+    Args:
+        engine: one of ENGINES.
+        scene: what stands in it.
+        gui: show it in a window.
+        compiled: whether substeps go past Python; by default where they can. Either way gives the same bits.
+
+    Raises:
+        DesignError: there is no such engine.
+        SimulationError: it has no window or no compiled substeps, and is asked for them.
+    """
+    if engine not in ENGINES:
+        raise DesignError(f"engine = {show(engine)} is not one of {', '.join(ENGINES)}")
+    return BulletWorld(scene, gui, compiled)
+
+
+def camera_of(world: World) -> Camera:
+    """What takes its pictures: PyBullet's camera, of a copy of the bodies where another engine moves them."""
+    if isinstance(world, BulletWorld):
+        return world.camera
+    if world not in _PICTURED:
+        _PICTURED[world] = BulletWorld(world.scene)
+    copy = _PICTURED[world]
+    poses, angles = world.read()
+    copy.place(poses, np.zeros((len(poses), 6)), angles)
+    return copy.camera
