@@ -11,6 +11,7 @@
 Environments, registered with Gymnasium by this import:
     gymnasium.make("tensegym/SixRodRolling-v0")          the six-rod robot; tensegym.envs.rolling.RollingEnv
     gymnasium.make("tensegym/FlexibleSixRodRolling-v0")  the same robot with passive rods that bend
+    gymnasium.make("tensegym/SixRodSteer-v0")            a direction that changes; also SixRodPlaces-v0, SixRodPath-v0
 
 Robots:
     RobotDesign       what a robot is: structure, rods, cables, drives, payload; validated, frozen

@@ -12,7 +12,8 @@ from tensegym.files import VERSION, lock_folder, write_text
 from tensegym.report import Report, table, to_json
 from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP
 from tensegym.tasks.figures import GaitRecorder, draw_gait, write_video
-from tensegym.tasks.policy_trials import EPISODE_SECONDS, FIRST_SEED, baseline_setups, policy_setup
+from tensegym.tasks.motions import load_task
+from tensegym.tasks.policy_trials import FIRST_SEED, baseline_setups, policy_setup
 from tensegym.tasks.rollout import rollout
 from tensegym.tasks.trials import Setup, check_setup, run_trials, summarise
 
@@ -29,8 +30,11 @@ class Evaluate:
     """Folder for metrics.json, gait.png and roll.mp4."""
     episodes: Count = 100
     """Episodes, each from a random face at a random heading towards a random direction."""
-    seconds: Annotated[float, Within(1.0, 3600.0, "s")] = EPISODE_SECONDS
-    """Length of an episode [s]."""
+    task: str | None = None
+    """A motion (roll, climb, cross, step, steer, places, path) or a TOML file with a [task] table, in place of the
+    policy's own task."""
+    seconds: Annotated[float, Within(1.0, 3600.0, "s")] | None = None
+    """Length of an episode [s]; default: 20, or the given task's own."""
     dt: Annotated[float, Within(LEAST_TIME_STEP, LARGEST_TIME_STEP, "s")] | None = None
     """Physics time step [s]; default: the environment's."""
     baselines: bool = True
@@ -45,7 +49,10 @@ class Evaluate:
     """Processes; default: one a core."""
 
     def run(self) -> Report:
-        setup = policy_setup(self.policy, seconds=self.seconds, dt=self.dt, observation=self.observation)
+        setup = policy_setup(
+            self.policy, seconds=self.seconds, dt=self.dt, observation=self.observation,
+            task=None if self.task is None else load_task(self.task),
+        )  # fmt: skip
         check_setup(setup)  # a policy that does not fit fails here, before anything is written
         with lock_folder(self.out):
             return self._evaluate(setup)
@@ -60,11 +67,11 @@ class Evaluate:
         seeds = range(FIRST_SEED, FIRST_SEED + self.episodes)
         results = {name: run_trials(each, seeds, jobs=self.jobs or 0) for name, each in setups.items()}
         summaries = {name: summarise(each) for name, each in results.items()}
-        data = {"policy": self.policy, "dt": dt, "seconds": self.seconds, "summaries": summaries,
+        data = {"policy": self.policy, "dt": dt, "seconds": setup.task.seconds, "summaries": summaries,
                 "episodes": {name: [result.row() for result in each] for name, each in results.items()}}  # fmt: skip
         write_text(self.out / "metrics.json", to_json({"version": VERSION, **data}, indent=1) + "\n")
         self._draw(setup, [result.gait.speed_lps for result in results[self.policy]])
-        return Report(_text(summaries), {"out": str(self.out), "dt": dt, "summaries": summaries})
+        return Report(_text(summaries, setup.task.MEASURES), {"out": str(self.out), "dt": dt, "summaries": summaries})
 
     def _draw(self, setup: Setup, speeds_lps: list[float]) -> None:
         recorder = GaitRecorder(pictures=self.video)
@@ -75,7 +82,7 @@ class Evaluate:
             write_video(recorder.frames, self.out / "roll.mp4")
 
 
-def _text(summaries: dict[str, dict[str, Any]]) -> str:
+def _text(summaries: dict[str, dict[str, Any]], measures: tuple[str, ...]) -> str:
     header = ["controller", "median L/s", "mean L/s [95 %]", "over half median", "slip share", "(summed)", "tips",
               "cost of transport", "audit failures"]  # fmt: skip
     rows = []
@@ -88,4 +95,9 @@ def _text(summaries: dict[str, dict[str, Any]]) -> str:
             f"{s['slip_share_sum_median']:.2f}", f"{s['tips_median']:.0f}",
             "-" if cost is None else f"{cost:.0f}", f"{s['audit_failures']} of {s['episodes']}",
         ])  # fmt: skip
-    return table(header, rows)
+    texts = [table(header, rows)]
+    if measures:
+        shown = [[name, *("{median:.3g} [{least:.3g}, {most:.3g}]".format(**s["measures"][measure])
+                          for measure in measures)] for name, s in summaries.items()]  # fmt: skip
+        texts.append("median [least, most] of\n" + table(["controller", *measures], shown))
+    return "\n\n".join(texts)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from tensegym.errors import InputError
-from tensegym.tables import fill
+from tensegym.tables import fill, in_file, one_line, read_toml
 
 from .bound import Bound
 from .follow import Follow
@@ -30,10 +30,26 @@ MOTIONS: dict[str, Motion] = {
     "climb": Motion(Roll, {"goal": Bound("speed_lps", True, 0.05), "slope": 10.0}),
     "cross": Motion(Roll, {"roughness": 0.02}),
     "carry": Motion(Roll, {"payload": 0.5}),
-    "steer": Motion(Navigate, {"goal": Bound("leg_speed", True, 0.28), "headings": 1.0}),
-    "places": Motion(Navigate, {"goal": Bound("places", True, 6.0)}),
+    "steer": Motion(Navigate, {"goal": Bound("leg_speed", True, 0.28), "headings": 1.0, "seconds": 60.0}),
+    "places": Motion(Navigate, {"goal": Bound("places", True, 6.0), "seconds": 60.0}),
     "path": Motion(Follow),
 }
+
+
+def load_task(name: str) -> Task:
+    """A task from a motion's name, or from a TOML file's [task] table.
+
+    Raises:
+        FileNotFoundError: there is no such file.
+        InputError: as `as_task`, naming the file.
+    """
+    if not name.endswith(".toml"):
+        return as_task(name)
+    table = read_toml(name, "task file", InputError)
+    if "task" not in table:
+        raise InputError(one_line(f"task file {name} has no [task] table; write one with motion = and its fields"))
+    with in_file(name):
+        return as_task(table["task"])
 
 
 def as_task(value: Any) -> Task:

@@ -11,6 +11,7 @@ from tensegym.design.design_file import as_design, design_to_dict
 from tensegym.design.variation import parse_variation
 
 from .motions import as_task
+from .task import Task
 from .trials import Setup, run_trials, summarise
 
 EPISODE_SECONDS = 20.0
@@ -18,25 +19,28 @@ FIRST_SEED = 10_000  # evaluation episodes start here; training draws its seeds 
 
 
 def policy_setup(
-    policy: str, *, seconds: float = EPISODE_SECONDS, dt: float | None = None, observation: str | None = None
-) -> Setup:
+    policy: str, *, seconds: float | None = None, dt: float | None = None, observation: str | None = None,
+    task: Task | None = None,
+) -> Setup:  # fmt: skip
     """What a policy is tried on: as in its training, but never given up.
 
     Args:
         policy: a shipped policy, or a run's folder.
-        seconds: length of an episode.
-        dt: physics time step [s] in place of the training's.
+        seconds: length of an episode; default: the given task's own, or else EPISODE_SECONDS.
+        dt: physics time step [s] in place of the training's, or the given task's.
         observation: in place of the training's.
+        task: in place of the training's, with all that is the task's: slope, settling, time step.
 
     Raises:
         FileNotFoundError: there is no such policy.
         DesignError, InputError: the training's arguments, or those given, are outside their ranges.
     """
     env = policy_env(policy)
-    own = {name: env.get(name) for name in ("settle", "slope", "reward")}
-    task = as_task(env.get("task", "roll")).changed(
-        **own, dt=env.get("dt") if dt is None else dt, seconds=seconds, patience=seconds
-    )
+    if task is None:
+        own = {name: env.get(name) for name in ("dt", "settle", "slope", "reward")}
+        task = as_task(env.get("task", "roll")).changed(**own, seconds=EPISODE_SECONDS)
+    seconds = task.seconds if seconds is None else seconds
+    task = task.changed(dt=dt, seconds=seconds, patience=seconds)
     design = task.equipped(as_design(env.get("design", "six_rod")))
     varies = env.get("vary") and env.get("episodes_per_design", 1)
     controller: dict[str, Any] = {"kind": "policy", "policy": policy}

@@ -106,7 +106,8 @@ def iterate(setup: Setup, controller: Controller, seeds: Sequence[int]) -> Gener
 def summarise(results: Sequence[Result]) -> dict[str, Any]:
     """Median, mean with its 95 % interval (normal; None of one trial), and the counts a gait is judged by.
 
-    The way of a trial that diverged or broke the energy audit does not count: its speed is taken as 0.
+    The way of a trial that diverged or broke the energy audit does not count: its speed, and what the task measures, is
+    taken as 0.
     """
     gaits = [result.gait for result in results]
     sound = np.array([result.sound for result in results])
@@ -129,4 +130,11 @@ def summarise(results: Sequence[Result]) -> dict[str, Any]:
         "audit_failures": sum(not gait.audit_passed for gait in gaits),
         "audit_excess_max": float(max(gait.audit_excess for gait in gaits)),
         "terminated": sum(result.diverged for result in results),
+        "measures": {name: _spread([result.measures[name] if result.sound else 0.0 for result in results])
+                     for name in results[0].measures},
     }
+
+
+def _spread(values: list[float]) -> dict[str, float]:
+    return {"mean": float(np.mean(values)), "median": float(np.median(values)), "least": min(values),
+            "most": max(values)}  # fmt: skip

@@ -79,3 +79,13 @@ def test_bad_fields_are_named(table, words):
         as_task({"motion": "places", **table})
     with pytest.raises(DesignError):
         gym.make(ID, task="places", observation="goal")
+
+
+@pytest.mark.parametrize("name", ["Steer", "Places", "Path"])
+def test_each_task_has_an_environment_of_its_own(name):
+    env = gym.make(f"tensegym/SixRod{name}-v0")
+    env.reset(seed=0)
+    info = env.step(np.zeros(6))[4]
+    assert set(info["measures"]) == set(env.unwrapped.task.MEASURES)
+    assert env.spec.max_episode_steps == round(env.unwrapped.task.seconds / 0.4)
+    env.close()
