@@ -113,7 +113,7 @@ def robot_model(design: RobotDesign) -> Model:
         rest_lengths=np.concatenate(natural),
         first_driven=len(structure.cables),
         driven_count=len(structure.stiff_cables),
-        drive_params=drive_constants(design.drive),
+        drive_params=np.tile(drive_constants(design.drive), (len(structure.stiff_cables), 1)),
         body_params=body_params,
         other_half=other_half,
         masses=masses,

@@ -69,7 +69,7 @@ def _wind(model, state, out, dt):
         c = model.first_driven + d
         # trapezoidal: the pull of the last step was made between the last tension and this one
         totals[DRIVE_WORK] += 0.5 * (out.last_tensions[d] + state.tensions[c]) * drives[d, PULLED]
-        drive_step(model.drive_params, drives[d], state.tensions[c], dt)
+        drive_step(model.drive_params[d], drives[d], state.tensions[c], dt)
         state.natural[c] -= drives[d, PULLED]
         totals[ELECTRICAL_ENERGY] += max(0.0, drives[d, CURRENT] * drives[d, VOLTAGE]) * dt
 

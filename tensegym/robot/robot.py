@@ -71,9 +71,10 @@ class TensegrityRobot(RobotState):
 
     # -- start ----------------------------------------------------------------------------------------------------
 
-    def reset(self, face: int | None = 0, heading: float = 0.0) -> None:
+    def reset(self, face: int | None = 0, heading: float = 0.0, height: float = 0.0) -> None:
         """Stand at rest on a face (an index into `faces`), turned by ``heading`` [rad] about the vertical.
 
+        With a ``height`` [m] the lowest foot is so far above z = 0, and the robot is about to fall.
         ``face=None`` leaves the structure unrotated, its lowest foot on the ground: the paper's first pose.
         """
         nodes = self.design.standing.nodes
@@ -83,15 +84,18 @@ class TensegrityRobot(RobotState):
             if not 0 <= face < len(self.faces.triangles):
                 raise DesignError(f"face = {face} is outside 0..{len(self.faces.triangles) - 1}")
             turn = Rotation.from_matrix(resting_rotation(nodes, self.faces.triangles[face], heading))
-        self.reset_rotated(turn)
+        self.reset_rotated(turn, height=height)
 
-    def reset_rotated(self, rotation: Rotation, velocities: FloatArray | None = None) -> None:
-        """Start with the standing structure rotated about its centre of mass, lowest foot touching z = 0.
+    def reset_rotated(
+        self, rotation: Rotation, velocities: FloatArray | None = None, height: float = 0.0
+    ) -> None:
+        """Start with the standing structure rotated about its centre of mass, lowest foot ``height`` [m] above z = 0.
 
         velocities (b, 6): linear [m/s] and angular [rad/s] of every body, halves as their pin allows; at rest by
         default.
         """
         poses = placed(self.model, rotation)
+        poses[:, 2] += height
         moving = np.zeros((len(poses), 6)) if velocities is None else velocities
         rates = pin_rates(self.model, rotation, moving)
         self.world.restart(poses, moving, rates)

@@ -44,6 +44,7 @@ class Task(Checked, error=DesignError):
     settle: float = bounded(0, 60, 0.3, "s", "standing still before it")
     patience: float = bounded(0, 3600, 4.0, "s", "given up without a tip in this time; environments never give up")
     dt: float = bounded(LEAST_TIME_STEP, LARGEST_TIME_STEP, 2e-3, "s", "physics time step")
+    drop: float = bounded(0, 100, 0.0, "m", "fallen from this height while it settles")
     slope: float = bounded(0, 60, 0.0, "deg", "of the ground, uphill along the wanted direction")
     roughness: float = bounded(0, 0.2, 0.0, "m", "root mean square height of the ground's bumps")
     correlation_length: float = bounded(0.1, 5, 0.3, "m", "of the bumps")
@@ -118,7 +119,7 @@ class Task(Checked, error=DesignError):
 
     def begin(self, robot: TensegrityRobot, start: Start, rng: np.random.Generator) -> Goal:
         """Stand the robot as an episode begins, settled. Raises SimulationError where that diverges."""
-        robot.reset(start.face, start.heading)
+        robot.reset(start.face, start.heading, self.drop)
         goal = self.aim(robot, start, rng)
         robot.slope(math.radians(self.slope), goal.bearing(robot).direction)
         robot.step(round(self.settle / robot.dt))

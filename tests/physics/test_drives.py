@@ -1,3 +1,5 @@
+from dataclasses import fields
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -5,6 +7,7 @@ from hypothesis import strategies as st
 
 from tensegym.design.design import Drive
 from tensegym.physics import drives as D
+from tensegym.robot.robot import TensegrityRobot
 
 
 def run(drive, command, tension, seconds=1.0, dt=1e-3):
@@ -82,3 +85,17 @@ def test_electrical_power_covers_mechanical_power():
 def test_speed_does_not_depend_on_the_step():
     speeds = [run(Drive(), 1e4, 20.0, 0.5, dt)[0][D.ROTOR_SPEED] for dt in (2e-3, 1e-3, 2.5e-4)]
     assert max(speeds) - min(speeds) < 1e-6 * max(speeds)
+
+
+def test_each_drive_has_constants_of_its_own():
+    """One that cannot turn, one without voltage, one as it is."""
+    with TensegrityRobot(dt=2e-3, ground=False) as robot:
+        names = [field.name for field in fields(Drive)]
+        robot.model.drive_params[0, names.index("speed_limit")] = 0.0
+        robot.model.drive_params[1, names.index("voltage_limit")] = 0.0
+        robot.command(0.5 * robot.command_limit)
+        robot.step(100)
+        turned = robot.drive_angles / robot.command_limit
+        assert turned[0] == 0
+        assert turned[1] <= 1e-9
+        assert turned[2:].min() > 0.05

@@ -184,3 +184,15 @@ def test_two_hundred_robots_leave_no_client_and_no_memory():
         grown, open_clients = pool.apply(_open_and_close, (200,))
     assert open_clients == 0
     assert grown < 20_000  # kB in all, a hundredth of what 200 open ones hold
+
+
+def test_from_a_height_it_falls_as_a_stone_does():
+    with TensegrityRobot(dt=1e-3) as robot:
+        robot.reset(face=2, height=1.0)
+        lowest = (robot.node_positions_in_world()[:, 2] - robot.model.foot_radii).min()
+        assert lowest == pytest.approx(1.0, abs=1e-12)
+        before = robot.centre_of_mass_in_world()
+        robot.step(400)
+        fallen = robot.centre_of_mass_in_world() - before
+        steps = robot.design.gravity * 1e-6 * 400 * 401 / 2  # the sum that the leapfrog makes of g t^2 / 2
+        np.testing.assert_allclose(fallen, [0, 0, -steps], atol=1e-9)
