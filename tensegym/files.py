@@ -71,18 +71,6 @@ def write_json(path: Path, data: dict[str, Any]) -> None:
     write_text(path, json.dumps({"version": VERSION, **data}, indent=1, allow_nan=False) + "\n")
 
 
-def read_json(path: Path) -> Any:
-    """What `write_json` wrote; or what was written before files had versions, which may be a list.
-
-    Raises InputError for a file that is no JSON, or newer than this program; OSError where it cannot be read.
-    """
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path} is not JSON, or cut short: {error}") from None
-    return without_version(data, path) if isinstance(data, dict) else data
-
-
 def without_version(data: dict[str, Any], path: Path | str) -> dict[str, Any]:
     """Data from a file less its version. Raises InputError where that is newer than this program's."""
     version = data.get("version", 0)

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from tensegym.errors import InputError
-from tensegym.files import is_empty, lock_folder, read_json, replace_file, replace_path, write_json, write_text
+from tensegym.files import is_empty, lock_folder, replace_file, replace_path, write_json, write_text
 
 
 def names(folder):
@@ -57,7 +57,7 @@ def test_on_a_full_disk_the_old_file_stays(tmp_path, monkeypatch):
     monkeypatch.setattr("os.fsync", full)
     with pytest.raises(OSError, match="No space left"):
         write_json(path, {"steps": 2})
-    assert read_json(path) == {"steps": 1} and names(tmp_path) == ["state.json"]
+    assert json.loads(path.read_text()) == {"version": 1, "steps": 1} and names(tmp_path) == ["state.json"]
 
 
 def test_links_stay_links_and_devices_devices(tmp_path):
@@ -70,27 +70,6 @@ def test_links_stay_links_and_devices_devices(tmp_path):
     null.symlink_to(os.devnull)
     write_text(null, "gone")
     assert os.path.exists(os.devnull) and not os.path.isfile(os.devnull)
-
-
-def test_files_have_a_version_and_newer_ones_are_refused(tmp_path):
-    path = tmp_path / "a.json"
-    write_json(path, {"x": [1.5, None]})
-    assert json.loads(path.read_text()) == {"version": 1, "x": [1.5, None]}
-    assert read_json(path) == {"x": [1.5, None]}
-    path.write_text('{"x": 1}')  # as files were before they had versions
-    assert read_json(path) == {"x": 1}
-    for version in ("2", "1.5", '"new"', "true"):
-        path.write_text(f'{{"version": {version}}}')
-        with pytest.raises(InputError, match=r"a\.json is of version .*, this tensegym reads up to 1"):
-            read_json(path)
-
-
-@pytest.mark.parametrize("text", ["", '{"x": 1', "\ufeff{}", "[" * 100_000])
-def test_what_is_no_such_file_is_refused_in_one_line(tmp_path, text):
-    path = tmp_path / "a.json"
-    path.write_text(text)
-    with pytest.raises(InputError, match=r"a\.json is not JSON"):
-        read_json(path)
 
 
 HOLD = """

@@ -1,5 +1,6 @@
 """The reader of tables: whatever a file holds ends as checked values or in one clear line of the caller's error."""
 
+import json
 import string
 import tomllib
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 
 from tensegym import tables
 from tensegym.errors import DesignError, FlexureError, InputError, TensegymError
+from tensegym.files import write_json
 from tensegym.tables import Range
 
 
@@ -280,3 +282,32 @@ def test_rows_are_named_from_1():
     with pytest.raises(InputError, match=r"cables row 1\[2\] = nan is no finite number"):
         tables.as_whole_rows([[1, float("nan")]], 2, "cables", InputError)
     assert tables.as_whole_rows([[1, 2]], 2, "cables", InputError).tolist() == [[1, 2]]
+
+
+def read_json(path):
+    return tables.read_json(path, "notes", FlexureError)
+
+
+def test_json_has_a_version_and_newer_ones_are_refused(tmp_path):
+    path = tmp_path / "a.json"
+    write_json(path, {"x": [1.5, None]})
+    assert json.loads(path.read_text()) == {"version": 1, "x": [1.5, None]}
+    assert read_json(path) == {"x": [1.5, None]}
+    path.write_text('\ufeff{"x": 1}')  # as files were before they had versions, or as an editor writes them
+    assert read_json(path) == {"x": 1}
+    for version in ("2", "1.5", '"new"', "true"):
+        path.write_text(f'{{"version": {version}}}')
+        with pytest.raises(InputError, match=r"a\.json is of version .*, this tensegym reads up to 1"):
+            read_json(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [("", "is not JSON"), ('{"x": 1', "is not JSON, or cut short: .*line 1 column 8"),
+     ("[" * 100_000, ".*nested too deep"), ("9" * 5000, "is not JSON, or cut short: Exceeds the limit")],
+)  # fmt: skip
+def test_what_is_no_json_is_refused_in_one_line(tmp_path, text, words):
+    path = tmp_path / "a.json"
+    path.write_text(text)
+    with pytest.raises(FlexureError, match=rf"notes .*a\.json {words}"):
+        read_json(path)

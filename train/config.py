@@ -9,6 +9,7 @@ from typing import Any
 
 from tensegym.design.variation import named_ranges
 from tensegym.errors import InputError
+from tensegym.files import without_version
 from tensegym.tables import Checked, bounded, fill, in_file, noted, one_line, parse_yaml, read_text, show
 
 
@@ -76,7 +77,7 @@ def load_config(name: str) -> TrainConfig:
                 f"unknown {what} {show(name)}; one of {', '.join(names)}, or a path to a YAML file"
             ))  # fmt: skip
         text = (shipped / f"{name}.yaml").read_text(encoding="utf-8")
-    data = parse_yaml(text, f"{what} {name}", InputError)
+    data = without_version(parse_yaml(text, f"{what} {name}", InputError), f"{what} {name}")
     with in_file(f"{what} {name}"):
         env = data.get("env")
         if isinstance(env, dict) and isinstance(env.get("vary"), str):  # in full, so that a run's copy stands alone

@@ -1,48 +1,121 @@
 """Make a policy's files of Stable-Baselines3's: `python -m tensegym.train.convert --folder runs/mine --trust`.
 
-model.zip and vecnormalize.pkl hold pickles, which run what their maker put in, so no other command reads them.
+The zip and vecnormalize.pkl hold pickles, which run what their maker put in, so no other command reads them. A plain
+"MlpPolicy" of PPO, as of the zoo, becomes one of this package whose only symmetry is to leave the robot as it is.
 """
 
 from __future__ import annotations
 
 import pickle
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+import yaml
+
+from tensegym.control.policy import foreign_policy
+from tensegym.control.policy_file import SavedPolicy, Statistics, Weights, write_policy
+from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
-from tensegym.files import lock_folder
+from tensegym.files import VERSION, lock_folder, write_json, write_text
+from tensegym.tables import one_line, read_json
 
-from .checkpoint import write_training
+from .checkpoint import saved_policy, write_training
+from .script import run_script
+from .state import STATE
+
+STATISTICS = "vecnormalize.pkl"
+_PARTS = {"policy_net": ("actor", "action_net"), "value_net": ("critic", "value_net")}  # own name, and the last layer
 
 
 @dataclass(frozen=True)
 class Convert:
-    """Write weights.npz and policy.json beside model.zip and vecnormalize.pkl, in a folder and in its checkpoints."""
+    """Write weights.npz and policy.json beside a policy of Stable-Baselines3's PPO, and in a run's checkpoints."""
 
     folder: Path
-    """Folder of a run or of a policy."""
+    """Folder of a run or of a policy, or its zip."""
     trust: bool = False
     """Read the pickles in it, which can run any code: the word of someone who knows where they come from."""
 
     def __call__(self) -> list[Path]:
         """Returns the folders written to. Raises InputError without trust, or where there is nothing to convert."""
-        folders = [f for f in (self.folder, *sorted((self.folder / "checkpoints").glob("[0-9]*")))
-                   if (f / "model.zip").is_file() and (f / "vecnormalize.pkl").is_file()]  # fmt: skip
-        if not folders:
-            raise InputError(f"no model.zip with a vecnormalize.pkl in {self.folder}")
+        folders = (self.folder, *sorted((self.folder / "checkpoints").glob("[0-9]*")))
+        found = [path for folder in folders if (path := foreign_policy(folder))]
+        if not found:
+            raise InputError(one_line(f"no policy of Stable-Baselines3 in {self.folder}: no zip of that kind"))
         if not self.trust:
-            raise InputError(f"{folders[0] / 'model.zip'} can run code when read; give --trust if you know its maker")
-        from stable_baselines3 import PPO
+            raise InputError(one_line(f"{found[0]} can run code when read; give --trust if you know its maker"))
+        with lock_folder(found[0].parent):
+            for path in found:
+                try:
+                    _convert(path)
+                except InputError:
+                    raise
+                except Exception as error:  # of what an unpickled object does
+                    why = f"{type(error).__name__}: {error}"
+                    raise InputError(one_line(f"{path} is no policy of PPO: {why}")) from error
+        return [path.parent for path in found]
 
-        with lock_folder(self.folder):
-            for folder in folders:
-                with (folder / "vecnormalize.pkl").open("rb") as file:
-                    env = pickle.load(file)
-                write_training(PPO.load(folder / "model.zip", device="cpu"), env, folder)
-        return folders
+
+def _convert(path: Path) -> None:
+    from stable_baselines3 import PPO
+
+    folder, model = path.parent, PPO.load(path, device="cpu")
+    statistics = next((p for p in (folder / STATISTICS, *sorted(folder.glob(f"*/{STATISTICS}"))) if p.is_file()), None)
+    env = None if statistics is None else pickle.loads(statistics.read_bytes())
+    if "mlp_extractor.index" in model.policy.state_dict():
+        if env is None:
+            raise InputError(one_line(f"no {STATISTICS} beside {path}"))
+        write_training(model, env, folder)
+    else:
+        policy = _plain(model, env, path)
+        config = None if (folder / "config.yaml").is_file() else _config(policy.observation_bounds.shape[1], path)
+        write_policy(policy, folder)
+        if config:
+            write_text(folder / "config.yaml", yaml.safe_dump({"version": VERSION, **config}))
+    if (folder / STATE).is_file() and isinstance(state := read_json(folder / STATE, "state", InputError), dict):
+        write_json(folder / STATE, {"updates": model._n_updates, **state})
+
+
+def _plain(model: Any, env: Any, path: Path) -> SavedPolicy:
+    """A policy of plain layers. Raises InputError where it is of others."""
+    from torch import nn
+
+    given = {name: value.numpy() for name, value in model.policy.state_dict().items()}
+    n, w = (np.prod(space.shape, dtype=int) for space in (model.observation_space, model.action_space))
+    weights: Weights = {"log_std": given.pop("log_std", np.zeros(0)), "mlp_extractor.index": np.arange(n)[None],
+                        "mlp_extractor.sign": np.ones((1, n), np.float32), "mlp_extractor.back": np.arange(w)[None]}
+    for part, (own, last) in _PARTS.items():
+        layers = sum(name.startswith(f"mlp_extractor.{part}.") for name in given) // 2
+        for what in ("weight", "bias"):
+            names = [f"mlp_extractor.{part}.{2 * k}.{what}" for k in range(layers)] + [f"{last}.{what}"]
+            weights |= {f"mlp_extractor.{own}.{2 * k}.{what}": given.pop(name) for k, name in enumerate(names)}
+    if given or model.policy.activation_fn is not nn.Tanh or model.policy.squash_output:
+        raise InputError(one_line(f"{path} is no policy of plain layers with tanh between them, as PPO's MlpPolicy is"))
+    if env is not None and env.norm_obs:
+        return replace(saved_policy(model, env), weights=weights)
+    seen, driven = model.observation_space, model.action_space
+    return SavedPolicy(
+        weights, np.array([seen.low, seen.high]), np.array([driven.low, driven.high]),
+        Statistics(np.zeros(n), np.ones(n), 1.0), Statistics(np.zeros(()), np.ones(()), 1.0),
+        clip=float(np.finfo(np.float32).max), epsilon=1e-300,
+    )  # fmt: skip
+
+
+def _config(observed: int, path: Path) -> dict[str, Any]:
+    """Of a policy that has none: the default environment with the observation that is as long."""
+    lengths = {}
+    for kind in ("full", "onboard"):
+        with RollingEnv(observation=kind) as env:
+            lengths[kind] = env.observation_space.shape[0]
+        if lengths[kind] == observed:
+            return {"env": {"observation": kind}}
+    raise InputError(one_line(
+        f"{path} observes {observed} values, the default environment {lengths}: write a config.yaml beside it with its "
+        "environment's arguments, as in `env: {design: six_rod_flexible}`, and convert it again"
+    ))  # fmt: skip
 
 
 if __name__ == "__main__":
-    import tyro
-
-    print(*tyro.cli(Convert)(), sep="\n")
+    run_script(Convert)

@@ -1,23 +1,49 @@
-"""Learning curves as a picture."""
+"""Learning curves: curve.csv of a run, and curves as a picture."""
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
 from pathlib import Path
 
+from tensegym.errors import InputError
 from tensegym.plotting import new_figure, save
+from tensegym.tables import Rows, one_line, read_rows, show
+
+CURVE = "curve.csv"
+FIELDS = ("steps", "hours", "episodes", "speed_lps", "speed_lps_p10", "slip_share", "tips", "audit_excess",
+          "action_std", "goal")  # fmt: skip
+_WITHOUT_GOAL = FIELDS[:-1]  # as runs of before have it
+
+
+def read_cells(path: Path) -> Rows:
+    """curve.csv as texts, FIELDS its header. Raises InputError naming the line, or FileNotFoundError."""
+    rows = read_rows(path, least=0)
+    if tuple(rows.header) == _WITHOUT_GOAL:
+        rows = Rows(list(FIELDS), [[*row, "nan"] for row in rows.cells], rows.lines)
+    if tuple(rows.header) != FIELDS:
+        raise InputError(one_line(f"{path}: the header must be {','.join(FIELDS)}; found {','.join(rows.header)}"))
+    for line, row in zip(rows.lines, rows.cells, strict=True):
+        for name, cell in zip(FIELDS, row, strict=True):
+            try:
+                float(cell)  # nan may stand there: what a diverged episode was worth
+            except ValueError:
+                raise InputError(one_line(f"{path}, line {line}: {name} = {show(cell)} is no number")) from None
+    return rows
+
+
+def read_curve(path: Path) -> list[dict[str, float]]:
+    """A row an update. Raises as `read_cells`."""
+    return [dict(zip(FIELDS, map(float, row), strict=True)) for row in read_cells(path).cells]
 
 
 def draw_curve(runs: Mapping[str, Path], out: Path) -> None:
     """One line a run: median speed of the training episodes against environment steps; slip share below it."""
     figure, (top, bottom) = new_figure(2, size=(7, 6), layout="tight", sharex=True)
     for name, path in runs.items():
-        with path.open() as file:
-            rows = list(csv.DictReader(file))
-        steps = [float(r["steps"]) / 1000 for r in rows]
-        top.plot(steps, [float(r["speed_lps"]) for r in rows], label=name)
-        bottom.plot(steps, [float(r["slip_share"]) for r in rows], label=name)
+        rows = read_curve(path)
+        steps = [row["steps"] / 1000 for row in rows]
+        top.plot(steps, [row["speed_lps"] for row in rows], label=name)
+        bottom.plot(steps, [row["slip_share"] for row in rows], label=name)
     top.set_ylabel("speed along heading [rod lengths/s]")
     bottom.set_ylabel("slip share [-]")
     bottom.set_xlabel("environment steps [thousand]")

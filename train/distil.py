@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import tyro
 
 from tensegym.arrays import FloatArray, IntArray
 from tensegym.control.bearing import Bearing
@@ -21,6 +20,8 @@ from tensegym.files import write_text
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.tasks.policy_trials import EPISODE_SECONDS, policy_setup
 from tensegym.tasks.trials import iterate
+
+from .script import run_script
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class Distil:
     out: Path = Path("tensegym/control/feedback.toml")
     """File to write."""
 
-    def run(self) -> str:
+    def __call__(self) -> str:
         setup = policy_setup(self.policy, seconds=EPISODE_SECONDS)
         policy, kinds = PolicyController(self.policy), drive_kinds(setup.design)
         examples, speeds = _Examples(policy), []
@@ -82,4 +83,4 @@ def fit(terms: FloatArray, commands: FloatArray, kinds: IntArray) -> FloatArray:
 
 
 if __name__ == "__main__":
-    print(tyro.cli(Distil).run())
+    run_script(Distil)

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, cast
+from typing import cast
 
 import gymnasium as gym
 import numpy as np
@@ -24,9 +25,10 @@ from tensegym.envs import CONTROL_PERIOD
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
 
-from .checkpoint import checkpoint_folder, read_training, write_checkpoint
+from .checkpoint import checkpoint_folder, go_back, read_training, write_checkpoint
 from .config import TrainConfig
 from .start_policy import begin_from
+from .state import TrainState
 from .symmetric_policy import SymmetricPolicy, symmetry_arguments
 from .vec_env import RollingVecEnv
 from .watch import Watch
@@ -54,8 +56,9 @@ def make_vec_env(config: TrainConfig) -> RollingVecEnv:
     return RollingVecEnv(config.n_envs, _episode_steps(config), arguments)
 
 
-def train(config: TrainConfig, seed: int, out: Path, state: dict[str, Any]) -> int:
+def train(config: TrainConfig, out: Path, state: TrainState) -> int:
     """Run the chunks that are left; returns the steps done."""
+    seed = state.seed
     torch.set_num_threads(1)
     workers = make_vec_env(config)
     monitored = VecMonitor(workers)
@@ -63,25 +66,26 @@ def train(config: TrainConfig, seed: int, out: Path, state: dict[str, Any]) -> i
         set_random_seed(seed)
         env = VecNormalize(monitored, gamma=config.gamma, clip_obs=10.0)
         model = _new_model(config, env, seed)
-        if state["steps"]:
-            read_training(model, env, checkpoint_folder(out, state["steps"]), state["updates"])
-            model.num_timesteps = state["steps"]
+        if state.steps:
+            read_training(model, env, checkpoint_folder(out, state.steps), state.updates)
+            model.num_timesteps = state.steps
         elif config.start is not None:
             begin_from(config.start, model, env)
+        go_back(out, state)
         model.set_logger(configure(str(out / "tensorboard"), ["tensorboard", "csv"]))
         metric = workers.get_attr("task")[0].goal.metric
         chunk_steps = config.chunk * config.rollout_steps
-        with tqdm(total=config.steps, initial=state["steps"], unit="step", desc=out.name, file=sys.stderr) as bar:
-            while state["steps"] < config.steps:
+        with tqdm(total=config.steps, initial=state.steps, unit="step", desc=out.name, file=sys.stderr) as bar:
+            while state.steps < config.steps:
                 began = time.perf_counter()
-                _start_chunk(model, env, config, seed, state["steps"])
+                _start_chunk(model, env, config, seed, state.steps)
                 model.learn(chunk_steps, callback=Watch(bar, out, state, metric), reset_num_timesteps=False)
-                state["steps"] = model.num_timesteps
-                state["seconds"] += time.perf_counter() - began
+                seconds = state.seconds + time.perf_counter() - began
+                state = replace(state, steps=model.num_timesteps, seconds=seconds)
                 write_checkpoint(model, env, out, state)
     finally:
         workers.close()
-    return state["steps"]
+    return state.steps
 
 
 def _new_model(config: TrainConfig, env: VecNormalize, seed: int) -> PPO:

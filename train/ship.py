@@ -13,11 +13,15 @@ from pathlib import Path
 from tensegym.control.policy import shipped
 from tensegym.control.policy_file import SETTINGS, WEIGHTS
 from tensegym.errors import InputError
-from tensegym.files import read_json, replace_path, write_text
+from tensegym.files import replace_path, write_text
+from tensegym.tables import as_text, mapping, read_json
 
 from .config import load_config
+from .curve import CURVE
+from .script import run_script
+from .state import STATE, read_state
 
-FILES = ("config.yaml", "versions.json", "curve.csv", "curve.png", WEIGHTS, SETTINGS)
+FILES = ("config.yaml", "versions.json", CURVE, "curve.png", WEIGHTS, SETTINGS)
 
 
 @dataclass(frozen=True)
@@ -37,17 +41,19 @@ class Ship:
         if out.exists() and not (out / WEIGHTS).is_file():
             raise InputError(f"name = {self.name!r} is taken by {out}, which is no policy; take another")
 
-        missing = [f for f in (*FILES, "state.json") if not (self.run / f).is_file()]
+        missing = [f for f in (*FILES, STATE) if not (self.run / f).is_file()]
         if missing:
             raise InputError(f"{self.run} is no finished run: {missing[0]} is missing; resume it with `tensegym train`")
-        state = read_json(self.run / "state.json")
+        state = read_state(self.run)
         config = load_config(str(self.run / "config.yaml"))
-        if state["steps"] < config.steps:
-            raise InputError(f"{self.run} stands at {state['steps']} of {config.steps} steps; resume it first")
-        commit = read_json(self.run / "versions.json")["commit"]
-        lines = [f"tensegym train --config {self.name} --seed {state['seed']}"]
-        lines += [f"tensegym train --resume --out {self.run} --steps {end}" for end in state.get("stages", [])[1:]]
-        done = f"# at commit {commit}; {state['steps']} steps in {state['seconds'] / 3600:.2f} h\n"
+        if state.steps < config.steps:
+            raise InputError(f"{self.run} stands at {state.steps} of {config.steps} steps; resume it first")
+        path = self.run / "versions.json"
+        versions = mapping(read_json(path, "versions", InputError), str(path), InputError)
+        commit = as_text(versions.get("commit"), f"{path}: commit", InputError)
+        lines = [f"tensegym train --config {self.name} --seed {state.seed}"]
+        lines += [f"tensegym train --resume --out {self.run} --steps {end}" for end in state.stages[1:]]
+        done = f"# at commit {commit}; {state.steps} steps in {state.seconds / 3600:.2f} h\n"
         with replace_path(out) as fresh:
             fresh.mkdir(parents=True)
             for name in FILES:
@@ -57,6 +63,4 @@ class Ship:
 
 
 if __name__ == "__main__":
-    import tyro
-
-    print(tyro.cli(Ship)())
+    run_script(Ship)

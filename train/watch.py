@@ -14,16 +14,16 @@ from tqdm import tqdm
 
 from tensegym.files import replace_file
 
-CURVE_FIELDS = ("steps", "hours", "episodes", "speed_lps", "speed_lps_p10", "slip_share", "tips", "audit_excess",
-                "action_std", "goal")  # fmt: skip
+from .curve import CURVE, FIELDS
+from .state import TrainState
 
 
 class Watch(BaseCallback):
     """Progress bar, and one row of curve.csv an update from the episodes that ended in it."""
 
-    def __init__(self, bar: tqdm, out: Path, state: dict[str, Any], metric: str) -> None:
+    def __init__(self, bar: tqdm, out: Path, state: TrainState, metric: str) -> None:
         super().__init__()
-        self.bar, self.state, self.path = bar, state, out / "curve.csv"
+        self.bar, self.state, self.path = bar, state, out / CURVE
         self.began = time.perf_counter()
         self.metric, self.gaits, self.goals = metric, list[dict[str, Any]](), list[float]()
 
@@ -40,7 +40,7 @@ class Watch(BaseCallback):
             return
         speeds = np.array([g["speed_lps"] for g in self.gaits])
         row = (
-            self.num_timesteps, (self.state["seconds"] + time.perf_counter() - self.began) / 3600, len(self.gaits),
+            self.num_timesteps, (self.state.seconds + time.perf_counter() - self.began) / 3600, len(self.gaits),
             np.median(speeds), np.quantile(speeds, 0.1), np.median([g["slip_share"] for g in self.gaits]),
             np.mean([g["tips"] for g in self.gaits]), np.max([g["audit_excess"] for g in self.gaits]),
             float(self.model.policy.log_std.detach().exp().mean()), float(np.mean(self.goals)),
@@ -48,7 +48,7 @@ class Watch(BaseCallback):
         before = self.path.read_text()
         with replace_file(self.path) as file:
             file.write(before)
-            csv.writer(file).writerow([f"{v:.6g}" if isinstance(v, float) else v for v in row])
-        for name, value in zip(CURVE_FIELDS[3:], row[3:], strict=True):
+            csv.writer(file, lineterminator="\n").writerow([f"{v:.6g}" if isinstance(v, float) else v for v in row])
+        for name, value in zip(FIELDS[3:], row[3:], strict=True):
             self.logger.record(f"gait/{name}", float(value))
         self.bar.set_postfix_str(f"{np.median(speeds):.3f} L/s, slip {row[5]:.2f}, {self.metric} {row[-1]:.3g}")

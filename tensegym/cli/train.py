@@ -2,29 +2,27 @@
 
 from __future__ import annotations
 
-import csv
 import platform
 import subprocess
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
 
 import yaml
 
 from tensegym.errors import InputError
-from tensegym.files import is_empty, lock_folder, replace_file, write_json, write_text
+from tensegym.files import VERSION, is_empty, lock_folder, write_json, write_text
 from tensegym.report import Report, table
 from tensegym.train.checkpoint import last_state
 from tensegym.train.config import TrainConfig, load_config
-from tensegym.train.curve import draw_curve
+from tensegym.train.curve import CURVE, FIELDS, draw_curve, read_curve
 from tensegym.train.ppo import make_env, train
 from tensegym.train.start_policy import check_start
-from tensegym.train.watch import CURVE_FIELDS
+from tensegym.train.state import TrainState, write_state
 
 from .options import Count, Seed
 
-_BEGUN = ("versions.json", "curve.csv", "config.yaml")  # all there is of a run that was killed as it began
+_BEGUN = ("versions.json", CURVE, "config.yaml")  # all there is of a run that was killed as it began
 
 
 @dataclass(frozen=True)
@@ -48,16 +46,15 @@ class Train:
             raise FileNotFoundError(f"nothing to resume in {out}: no state.json")
         with lock_folder(out):
             config, state = self._go_on(out) if self.resume else self._begin(out)
-            steps = train(config, state["seed"], out, state)
-            with (out / "curve.csv").open(newline="") as file:
-                rows = list(csv.DictReader(file))
-            draw_curve({out.name: out / "curve.csv"}, out / "curve.png")
-        best = max((float(row["speed_lps"]) for row in rows), default=None)
-        data = {"out": str(out), "seed": state["seed"], "steps": steps, "best_median_speed_lps": best,
-                "last": {name: float(value) for name, value in rows[-1].items()} if rows else {}}  # fmt: skip
+            steps = train(config, out, state)
+            rows = read_curve(out / CURVE)
+            draw_curve({out.name: out / CURVE}, out / "curve.png")
+        best = max((row["speed_lps"] for row in rows), default=None)
+        data = {"out": str(out), "seed": state.seed, "steps": steps, "best_median_speed_lps": best,
+                "last": rows[-1] if rows else {}}  # fmt: skip
         return Report(table(["run", "steps", "best median speed L/s"], [[str(out), steps, best]]), data)
 
-    def _begin(self, out: Path) -> tuple[TrainConfig, dict[str, Any]]:
+    def _begin(self, out: Path) -> tuple[TrainConfig, TrainState]:
         """A new run's folder; nothing is written before all of it has been looked at."""
         if not is_empty(out, but=_BEGUN):
             raise InputError(f"folder {out} is not empty; take another --out, or --resume to go on with it")
@@ -65,22 +62,21 @@ class Train:
         if self.steps is not None:
             config = replace(config, steps=self.steps)
         _check(config)
-        state = {"seed": self.seed, "steps": 0, "seconds": 0.0}
+        state = TrainState(self.seed)
         write_json(out / "versions.json", _versions())
-        with replace_file(out / "curve.csv") as file:
-            csv.writer(file).writerow(CURVE_FIELDS)
+        write_text(out / CURVE, ",".join(FIELDS) + "\n")
         _write_config(config, out)
-        write_json(out / "state.json", state)
+        write_state(state, out)
         return config, state
 
-    def _go_on(self, out: Path) -> tuple[TrainConfig, dict[str, Any]]:
+    def _go_on(self, out: Path) -> tuple[TrainConfig, TrainState]:
         """The run in a folder, with a longer schedule if steps are given; its state keeps the ends of its stages."""
         state = last_state(out)
         config = load_config(str(out / "config.yaml"))
         if self.steps is not None:
-            if self.steps <= state["steps"]:
-                raise InputError(f"steps = {self.steps} must be above the {state['steps']} that {out} stands at")
-            state["stages"] = [*state.get("stages", [config.steps]), self.steps]
+            if self.steps <= state.steps:
+                raise InputError(f"steps = {self.steps} must be above the {state.steps} that {out} stands at")
+            state = replace(state, stages=(*(state.stages or (config.steps,)), self.steps))
             config = replace(config, steps=self.steps)
             _write_config(config, out)
         return config, state
@@ -96,7 +92,7 @@ def _check(config: TrainConfig) -> None:
 
 
 def _write_config(config: TrainConfig, out: Path) -> None:
-    write_text(out / "config.yaml", yaml.safe_dump(config.as_dict(), sort_keys=False))
+    write_text(out / "config.yaml", yaml.safe_dump({"version": VERSION, **config.as_dict()}, sort_keys=False))
 
 
 def _versions() -> dict[str, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from functools import lru_cache
 from importlib import resources
 from pathlib import Path
@@ -75,24 +76,30 @@ def policy_folder(name: str | Path) -> Path:
         FileNotFoundError: there is no policy.
         InputError: there is one that could run code.
     """
-    names = ", ".join(shipped_names())
-    if isinstance(name, str) and not {"/", os.sep} & set(name):
+    names, folder = ", ".join(shipped_names()), Path(name)
+    if isinstance(name, str) and not {"/", os.sep} & set(name) and not (name.endswith(".zip") and folder.is_file()):
         if name not in shipped_names():
             raise FileNotFoundError(one_line(f"no policy {show(name)}: shipped are {names}; a run's folder is given as "
                                              f"a path, ./{name}"))  # fmt: skip
         return shipped(name)
-    folder = Path(name)
-    for file in FILES:
-        if (folder / file).is_file():
-            continue
-        if (folder / "model.zip").is_file():
-            raise InputError(one_line(
-                f"{folder} holds a policy as Stable-Baselines3 writes it, which can run code when it is read: if you "
-                f"trust its maker, convert it by `python -m tensegym.train.convert --folder {folder} --trust`"
-            ))  # fmt: skip
-        raise FileNotFoundError(one_line(f"no policy in {show(str(name))}: {file} is missing; give a run's folder, or "
-                                         f"one of {names}"))  # fmt: skip
+    missing = [file for file in FILES if not (folder / file).is_file()]
+    if missing and foreign_policy(folder):
+        raise InputError(one_line(
+            "a policy as Stable-Baselines3 writes it can run code when it is read: if you trust its maker, convert it "
+            f"by `python -m tensegym.train.convert --folder {shlex.quote(str(name))} --trust`"
+        ))  # fmt: skip
+    if missing:
+        raise FileNotFoundError(one_line(f"no policy in {show(str(name))}: {missing[0]} is missing; give a run's "
+                                         f"folder, or one of {names}"))  # fmt: skip
     return folder
+
+
+def foreign_policy(path: Path) -> Path | None:
+    """The zip of a policy as Stable-Baselines3 writes it: at a path, or in the folder there; None without one."""
+    if path.is_file():
+        return path if path.suffix == ".zip" else None
+    zips = [path / name for name in ("model.zip", "best_model.zip")] + sorted(path.glob("*.zip"))
+    return next((each for each in zips if each.is_file()), None)
 
 
 def policy_env(name: str | Path) -> dict[str, Any]:

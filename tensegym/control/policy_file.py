@@ -17,10 +17,12 @@ from numpy.typing import NDArray
 
 from tensegym.arrays import FloatArray
 from tensegym.errors import InputError
-from tensegym.files import read_json, replace_path, write_json
+from tensegym.files import replace_path, write_json
+from tensegym.tables import as_number, as_numbers, as_rows, in_file, known, mapping, one_line, read_json
 
 WEIGHTS, SETTINGS = "weights.npz", "policy.json"
 _LARGEST = 1 << 28  # bytes of weights
+_FIELDS = ("observation_bounds", "action_bounds", "observations", "returns", "clip", "epsilon")
 
 Weights = dict[str, NDArray[Any]]
 
@@ -75,7 +77,8 @@ class SavedPolicy:
 
 
 def write_policy(policy: SavedPolicy, folder: Path) -> None:
-    """Write weights.npz and policy.json; each file is whole or as before."""
+    """Write weights.npz and policy.json; each file is whole or as before. Raises InputError as `read_policy`."""
+    _check(policy, folder)
     write_arrays(policy.weights, folder / WEIGHTS)
     write_json(folder / SETTINGS, {
         "clip": policy.clip, "epsilon": policy.epsilon,
@@ -92,17 +95,19 @@ def read_policy(folder: Path) -> SavedPolicy:
         InputError: a file is cut short, is something else, or does not fit the other.
         OSError: one is missing.
     """
-    weights = read_arrays(folder / WEIGHTS)
-    data = read_json(folder / SETTINGS)
-    try:
-        policy = SavedPolicy(
-            weights, np.array(data["observation_bounds"], np.float32), np.array(data["action_bounds"], np.float32),
-            _statistics(data["observations"]), _statistics(data["returns"]),
-            float(data["clip"]), float(data["epsilon"]),
-        )  # fmt: skip
-        _check(policy)
-    except (KeyError, TypeError, ValueError, IndexError, OverflowError) as error:
-        raise InputError(f"{folder} holds no policy: {type(error).__name__} {' '.join(str(error).split())}") from None
+    weights = {name: _single(array) for name, array in read_arrays(folder / WEIGHTS).items()}
+    path = folder / SETTINGS
+    data = read_json(path, "policy's settings", InputError)
+    with in_file(str(path)):
+        known(data, _FIELDS, "a policy's settings", InputError)
+        for name in _FIELDS:
+            if name not in data:
+                raise InputError(f"{name} is missing")
+        seen, driven = (_bounds(data[name], name) for name in _FIELDS[:2])
+        observations, returns = (_statistics(data[name], name) for name in _FIELDS[2:4])
+        clip, epsilon = (as_number(data[name], name, InputError) for name in _FIELDS[4:])
+    policy = SavedPolicy(weights, seen, driven, observations, returns, clip, epsilon)
+    _check(policy, folder)
     return policy
 
 
@@ -129,12 +134,40 @@ def read_arrays(path: Path) -> Weights:
     return arrays
 
 
-def _statistics(data: dict[str, Any]) -> Statistics:
-    return Statistics(np.array(data["mean"], float), np.array(data["variance"], float), float(data["count"]))
+def _bounds(value: Any, name: str) -> NDArray[np.float32]:
+    """Lowest and highest, (2, n)."""
+    if not isinstance(value, list) or len(value) != 2 or not isinstance(value[0], list):
+        raise InputError(f"{name} must be a row of lowest and one of highest values")
+    return _single(as_rows(value, len(value[0]), name, InputError))
 
 
-def _check(policy: SavedPolicy) -> None:
-    """Raises ValueError or KeyError where shapes or numbers do not fit."""
+def _single(array: NDArray[Any]) -> NDArray[Any]:
+    """Numbers as networks take them: float32, int64."""
+    with np.errstate(over="ignore"):  # infinities are refused later
+        return array.astype(np.float32 if array.dtype.kind == "f" else np.int64)
+
+
+def _statistics(value: Any, name: str) -> Statistics:
+    table = mapping(value, name, InputError)
+    if missing := {"mean", "variance", "count"} - table.keys():
+        raise InputError(f"{name}.{min(missing)} is missing")
+    mean, variance = (
+        np.array(as_numbers(table[key], None, f"{name}.{key}", InputError) if isinstance(table[key], list)
+                 else as_number(table[key], f"{name}.{key}", InputError))
+        for key in ("mean", "variance")
+    )  # fmt: skip
+    return Statistics(mean, variance, as_number(table["count"], f"{name}.count", InputError))
+
+
+def _check(policy: SavedPolicy, folder: Path) -> None:
+    """Raises InputError where shapes or numbers do not fit."""
+    try:
+        _check_shapes(policy)
+    except (KeyError, ValueError, TypeError) as error:  # TypeError: one number where an array stands
+        raise InputError(one_line(f"{folder} holds no policy: {type(error).__name__} {error}")) from None
+
+
+def _check_shapes(policy: SavedPolicy) -> None:
     n, w = policy.observation_bounds.shape[1], policy.action_bounds.shape[1]
     index, sign, back = (policy.weights[f"mlp_extractor.{name}"] for name in ("index", "sign", "back"))
     wanted: dict[str, tuple[NDArray[Any], tuple[int, ...]]] = {
@@ -160,5 +193,6 @@ def _check(policy: SavedPolicy) -> None:
     for name, rows, size in (("index", index, n), ("back", back, w)):
         if rows.dtype.kind != "i" or not ((rows >= 0) & (rows < size)).all():
             raise ValueError(f"{name} is outside [0, {size - 1}]")
-    if not (policy.clip > 0 and policy.epsilon > 0 and (policy.observations.variance >= 0).all()):
-        raise ValueError("clip and epsilon must be above 0, a variance not below")
+    least = min(policy.observations.count, policy.returns.count, policy.returns.variance, *policy.observations.variance)
+    if not (policy.clip > 0 and policy.epsilon > 0 and least >= 0):
+        raise ValueError("clip and epsilon must be above 0, a variance and a count not below")

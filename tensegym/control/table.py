@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from tensegym.errors import DesignError
+from tensegym.files import without_version
 from tensegym.tables import as_text, bounded, fill, noted, show
 
 from .controller import Controller
@@ -90,6 +91,7 @@ _KINDS: dict[str, tuple[type[Any], frozenset[str]]] = {
 
 def _parsed(table: Mapping[str, Any]) -> tuple[str, Any]:
     """Kind and parameters."""
+    table = without_version(dict(table), "the controller's table")  # as best/controller.toml of a search has one
     kind = table.get("kind", "cpg")
     if not isinstance(kind, str) or kind not in _KINDS:
         raise DesignError(f"controller kind = {show(kind)} is not one of {', '.join(_KINDS)}")

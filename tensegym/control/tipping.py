@@ -9,23 +9,26 @@ from itertools import combinations
 import numpy as np
 
 from tensegym.arrays import FloatArray
+from tensegym.errors import InputError
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.robot.standing import has_fallen
 from tensegym.structure.faces import supporting_face
+from tensegym.tables import Checked, bounded, noted
 
 
 @dataclass(frozen=True)
-class Pull:
-    """One pull of some drives and its release.
+class Pull(Checked, error=InputError):
+    """One pull of some drives and its release; at most the design's max_pull is wound in."""
 
-    drives: indices. depth: part of the cable's rest length wound in (at most the design's max_pull). pull_time and
-    release_time [s].
-    """
+    drives: tuple[int, ...] = bounded(0, 10**4, what="indices of the drives")
+    depth: float = bounded(0, 1, what="part of the cable's rest length wound in")
+    pull_time: float = bounded(0, 60, 2.0, "s", "wound in for this long")
+    release_time: float = bounded(0, 60, 1.6, "s", "let out for this long")
 
-    drives: tuple[int, ...]
-    depth: float
-    pull_time: float = 2.0
-    release_time: float = 1.6
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.drives:
+            raise InputError("Pull.drives = () must name one drive or more")
 
     @property
     def duration(self) -> float:
@@ -41,7 +44,7 @@ class Pull:
 
 
 @dataclass(frozen=True)
-class Tip:
+class Tip(Checked, error=InputError):
     """What a pull did. from_face, to_face: indices into the robot's faces, equal where it did not tip.
 
     travel: horizontal displacement of the centre of mass (2,) [m] in the frame of the face it started on (x from the
@@ -49,10 +52,10 @@ class Tip:
     """
 
     pull: Pull
-    from_face: int
-    to_face: int
-    travel: tuple[float, float]
-    peak_tension: float
+    from_face: int = bounded(0, 10**6)
+    to_face: int = bounded(0, 10**6)
+    travel: tuple[float, float] = noted()
+    peak_tension: float = noted()
 
     @property
     def tipped(self) -> bool:

@@ -13,10 +13,10 @@ import numpy as np
 
 from tensegym.arrays import FloatArray
 from tensegym.errors import DesignError, InputError
-from tensegym.files import read_json, write_json
+from tensegym.files import write_json
 from tensegym.robot.reading import heading_rotation
 from tensegym.robot.robot import TensegrityRobot
-from tensegym.tables import Checked, bounded
+from tensegym.tables import Checked, bounded, fill, in_file, read_json, show
 
 from .bearing import Bearing
 from .tipping import Pull, Tip, current_face, face_direction, tip_table
@@ -96,15 +96,12 @@ def save_table(table: Sequence[Tip], path: Path) -> None:
 
 
 def load_table(path: Path) -> list[Tip]:
-    """Read what `save_table` wrote."""
+    """Read what `save_table` wrote. Raises InputError naming the row and the field, or FileNotFoundError."""
     if not path.is_file():
         raise FileNotFoundError(f"no table of tips {path}; make one with `tensegym step --all-faces --out DIR`")
-    data = read_json(path)
-    try:
-        return [
-            Tip(Pull(**(row["pull"] | {"drives": tuple(row["pull"]["drives"])})), row["from_face"], row["to_face"],
-                tuple(row["travel"]), row["peak_tension"])
-            for row in (data["tips"] if isinstance(data, dict) else data)
-        ]  # fmt: skip
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise InputError(f"{path} is not a table of tips: {error}") from error
+    data = read_json(path, "table of tips", InputError)
+    rows = data.get("tips") if isinstance(data, dict) else data
+    with in_file(f"table of tips {path}"):
+        if not isinstance(rows, list) or not rows:
+            raise InputError(f"tips = {show(rows)} must be a list of one pull or more, with what it did")
+        return [fill(Tip, row, f"tips row {number}", InputError) for number, row in enumerate(rows, 1)]

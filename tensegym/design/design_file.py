@@ -29,6 +29,7 @@ from tensegym.tables import (
     fill,
     in_file,
     known,
+    mapping,
     one_line,
     read_fields,
     read_toml,
@@ -59,13 +60,14 @@ def as_design(value: str | Path | dict[str, Any] | RobotDesign) -> RobotDesign:
 
 def load_design(path: str | Path) -> RobotDesign:
     """Read a TOML file. Raises as `as_design` does, naming the file."""
-    data = without_version(read_toml(path, "design file", DesignError), path)
+    data = read_toml(path, "design file", DesignError)
     with in_file(f"design file {path}"):
         return design_from_dict(data)
 
 
 def design_from_dict(data: dict[str, Any]) -> RobotDesign:
     """Build a design from nested plain types; fields left out keep the preset's values. Raises as `as_design` does."""
+    data = without_version(mapping(data, "the design", DesignError), "the design")
     data = dict(known(data, ("preset", *(f.name for f in fields(RobotDesign))), "the design", DesignError))
     preset = as_text(data.pop("preset", "six_rod"), "preset", DesignError)
     if preset not in PRESETS:

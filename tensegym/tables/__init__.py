@@ -7,7 +7,7 @@ are read from the annotations. `fill` makes it out of a table, `describe` lists 
 from .fields import Checked, FieldRow, bounded, check_fields, choice, describe, fill, noted, parsed, read_fields
 from .ranges import Range
 from .rows import Rows, number_of, read_rows
-from .text import decode, parse_toml, parse_yaml, read_text, read_toml, read_yaml
+from .text import decode, parse_json, parse_toml, parse_yaml, read_json, read_text, read_toml, read_yaml
 from .values import (
     Error,
     as_number,
@@ -26,6 +26,6 @@ from .values import (
 __all__ = [
     "Checked", "Error", "FieldRow", "Range", "Rows", "as_number", "as_numbers", "as_rows", "as_text",
     "as_whole", "as_whole_rows", "bounded", "check_fields", "choice", "decode", "describe", "fill", "in_file",
-    "known", "mapping", "noted", "number_of", "one_line", "parse_toml", "parse_yaml", "parsed", "read_fields",
-    "read_rows", "read_text", "read_toml", "read_yaml", "show",
+    "known", "mapping", "noted", "number_of", "one_line", "parse_json", "parse_toml", "parse_yaml", "parsed",
+    "read_fields", "read_json", "read_rows", "read_text", "read_toml", "read_yaml", "show",
 ]  # fmt: skip

@@ -25,7 +25,7 @@ class Rows(NamedTuple):
     """Where in the file each row ends, from 1."""
 
 
-def read_rows(path: Path) -> Rows:
+def read_rows(path: Path, least: int = 1) -> Rows:
     """Header and rows of a CSV, blank lines and empty columns at the end left out.
 
     Columns stand between semicolons or tabs where the header has one, else between commas; with semicolons or tabs a
@@ -33,6 +33,7 @@ def read_rows(path: Path) -> Rows:
 
     Args:
         path: of the file, UTF-8 with or without a byte order mark.
+        least: rows below the header.
 
     Raises:
         FileNotFoundError: where it is not there.
@@ -52,7 +53,7 @@ def read_rows(path: Path) -> Rows:
         numbers = [number for line, number in numbered if any(line)]
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: not a CSV text file") from error
-    if len(lines) < 2:
+    if len(lines) < 1 + least:
         raise InputError(f"{path}: no rows below the header" if lines else f"{path}: empty")
     header, *rows = lines
     while header and not header[-1] and all(len(row) < len(header) or not row[len(header) - 1] for row in rows):

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import codecs
+import json
 import tomllib
 from functools import cache
 from pathlib import Path
 from typing import Any
+
+from tensegym.files import without_version
 
 from .values import Error, mapping, one_line
 
@@ -90,6 +93,25 @@ def parse_yaml(text: str, name: str, error: Error) -> dict[str, Any]:
     except (ValueError, TypeError) as fault:  # more digits than Python converts
         raise error(one_line(f"{name} is not read: {_reason(fault)}")) from fault
     return {} if data is None else mapping(data, name, error)
+
+
+def parse_json(text: str, name: str, error: Error) -> Any:
+    """What a JSON text says. Raises ``error`` naming the file by ``name``, with line and column."""
+    try:
+        return json.loads(text)
+    except RecursionError as fault:
+        raise error(one_line(f"{name} is not read: its brackets are nested too deep")) from fault
+    except ValueError as fault:  # a number of more digits than Python converts is one too
+        raise error(one_line(f"{name} is not JSON, or cut short: {_reason(fault)}")) from fault
+
+
+def read_json(path: str | Path, what: str, error: Error) -> Any:
+    """What `tensegym.files.write_json` wrote, or, as before files had versions, any JSON.
+
+    Raises FileNotFoundError, or ``error`` naming ``what`` and the path: no JSON, or newer than this program.
+    """
+    data = parse_json(read_text(path, what, error), f"{what} {path}", error)
+    return without_version(data, path) if isinstance(data, dict) else data
 
 
 def read_toml(path: str | Path, what: str, error: Error) -> dict[str, Any]:

@@ -89,7 +89,7 @@ def test_nothing_in_a_strangers_policy_runs(command, stranger, tmp_path, cli):
         result = cli("design", "run", "--task", tmp_path / "task.toml", "--budget", 1, "--out", out)
     else:
         with pytest.raises((InputError, OSError)):
-            Distil(str(stranger), out=out).run()
+            Distil(str(stranger), out=out)()
         return
     assert_refused(result)
 

@@ -1,7 +1,9 @@
 """A policy's files: the same bits back, and what does not fit is refused in one line."""
 
+import io
 import json
 import shutil
+import zipfile
 
 import numpy as np
 import pytest
@@ -56,11 +58,18 @@ def changed(array):
         (lambda w, s: w["mlp_extractor.index"].fill(10_000), "index is outside"),
         (lambda w, s: w["mlp_extractor.actor.0.weight"].fill(np.nan), "not of finite numbers"),
         (lambda w, s: w.pop("mlp_extractor.actor.4.weight"), "actor does not give"),
+        (lambda w, s: w.update({"mlp_extractor.actor.4.bias": np.float32(1)}), "TypeError"),
         (lambda w, s: s.pop("clip"), "clip"),
         (lambda w, s: s.update(clip=-1.0), "clip"),
         (lambda w, s: s["observations"].update(mean=[1.0]), "observations.mean has the shape"),
-        (lambda w, s: s.update(observation_bounds=[[1.0], [2.0, 3.0]]), "inhomogeneous"),
-        (lambda w, s: s.update(observation_bounds="wide"), "could not convert"),
+        (lambda w, s: s.update(observation_bounds=[[1.0], [2.0, 3.0]]), "observation_bounds row 2 .* has 2 entries"),
+        (lambda w, s: s.update(observation_bounds="wide"), "observation_bounds must be a row of lowest and one of"),
+        (lambda w, s: s["action_bounds"][0].__setitem__(2, 1e300), "action_bounds is not finite"),
+        (lambda w, s: s["returns"].update(mean=["0"]), r"returns.mean\[1\] = '0' is a text"),
+        (lambda w, s: s["returns"].update(count=-1.0), "a count not below"),
+        (lambda w, s: s["observations"].pop("count"), "observations.count is missing"),
+        (lambda w, s: s.update(observations="../../elsewhere.json"), "observations = .* must be a table"),
+        (lambda w, s: s.update(more=1), "unknown field 'more'"),
         (lambda w, s: s.update(version=2), "is of version 2"),
     ],
 )
@@ -80,4 +89,30 @@ def test_weights_cut_short_are_refused(keep, tmp_path):
     path = tmp_path / "weights.npz"
     path.write_bytes((shipped("onboard") / "weights.npz").read_bytes()[:keep])
     with pytest.raises(InputError, match="holds no arrays of numbers"):
+        read_arrays(path)
+
+
+def test_numbers_of_other_widths_are_read_as_networks_take_them(tmp_path):
+    folder = tmp_path / "policy"
+    shutil.copytree(shipped("onboard"), folder)
+    kinds = {"f": np.float64, "i": np.int16}
+    wide = {name: array.astype(kinds[array.dtype.kind]) for name, array in read_policy(folder).weights.items()}
+    np.savez(folder / "weights.npz", **wide)
+    seen = np.linspace(-1, 1, load_policy("onboard").observed, dtype=np.float32)
+    np.testing.assert_array_equal(load_policy(folder)(seen), load_policy("onboard")(seen), strict=True)
+
+
+def test_an_array_whose_head_says_more_than_is_there_is_refused(tmp_path):
+    """A kilobyte that would unpack to a terabyte."""
+    path = tmp_path / "weights.npz"
+    head = io.BytesIO()
+    np.lib.format.write_array_header_1_0(head, {"descr": "<f4", "fortran_order": False, "shape": (1 << 38,)})
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("log_std.npy", head.getvalue() + b"0" * 1000)
+    with pytest.raises(InputError, match="holds no arrays of numbers"):
+        read_arrays(path)
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("log_std.npy", bytes(300 << 20))
+    assert path.stat().st_size < 1 << 20
+    with pytest.raises(InputError, match="more than 256 MB"):
         read_arrays(path)

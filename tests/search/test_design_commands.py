@@ -4,9 +4,12 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 
 import pytest
+import tomli_w
 
+from tensegym.search.problem import problem_from
 from tensegym.search.store import Store
 from tests.conftest import assert_refused
 
@@ -33,6 +36,10 @@ def test_run_status_resume_report(cli, tiny_file, tmp_path):
     for name in ("progress.png", "gait.png", "best/design.toml", "best/controller.toml", "best/urdf/payload.urdf"):
         assert (out / name).is_file() == (name != "best/urdf/payload.urdf")
     assert list((out / "best" / "urdf").glob("*.urdf"))
+    # what was found is where the next search begins
+    found = {name: tomllib.loads((out / "best" / f"{name}.toml").read_text()) for name in ("design", "controller")}
+    again = problem_from(tomli_w.dumps(tomllib.loads(tiny_file.read_text()) | found), "again")
+    assert again.space.start == pytest.approx(Store(out, None).finished()[report["trial"]][0])
 
 
 def test_a_killed_search_loses_only_what_was_in_flight(tiny_file, tmp_path):

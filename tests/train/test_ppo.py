@@ -19,8 +19,8 @@ from tensegym.control.policy import load_policy
 from tensegym.control.policy_file import read_arrays, read_policy
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
-from tensegym.files import read_json
 from tensegym.train.ship import Ship
+from tensegym.train.state import read_state
 from tests.conftest import assert_refused
 
 STEPS = 20  # a chunk of the tiny training
@@ -67,7 +67,7 @@ def test_weights_and_statistics_move_with_every_chunk(tiny_run):
     seen = []
     for folder in sorted((tiny_run / "checkpoints").iterdir()):
         saved = read_policy(folder)
-        assert read_json(folder / "state.json")["steps"] == int(folder.name)
+        assert read_state(folder).steps == int(folder.name)
         seen.append((saved.layers("actor")[0][0], saved.observations.count))
     assert all(np.abs(a[0] - b[0]).max() > 0 and b[1] > a[1] for a, b in pairwise(seen))
 
@@ -141,7 +141,7 @@ def test_a_finished_run_goes_on_with_a_longer_schedule_and_says_so(tiny_run, tmp
 def test_an_unfinished_run_is_not_shipped(tiny_run, tmp_path):
     run = tmp_path / "cut"
     shutil.copytree(tiny_run, run)
-    (run / "state.json").write_text(json.dumps({"seed": 7, "steps": STEPS, "seconds": 1.0}))
+    (run / "state.json").write_text(json.dumps({"seed": 7, "steps": STEPS, "seconds": 1.0, "updates": 2}))
     with pytest.raises(InputError, match="stands at 20 of 60 steps"):
         Ship(run, "tiny")()
 

@@ -14,7 +14,7 @@ from tensegym.errors import FlexureError
 from tensegym.files import replace_file
 from tensegym.flexure.hinge import Box, hinge_from_dict, hinge_to_dict
 from tensegym.flexure.hinge.ranges import check_count
-from tensegym.tables import as_number, as_numbers, as_text, in_file, mapping, one_line, read_text, show
+from tensegym.tables import as_number, as_numbers, as_text, in_file, mapping, one_line, parse_json, read_text, show
 
 from .certificate import certify
 from .joint import MODELS, Joint, Model
@@ -61,11 +61,7 @@ def load_joint(path: str | Path) -> Joint:
         FileNotFoundError: where there is no such file.
         FlexureError: naming the file and the field.
     """
-    text = read_text(path, "joint file", FlexureError)
-    try:
-        data = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise FlexureError(one_line(f"{path} is not JSON: {error}")) from error
+    data = parse_json(read_text(path, "joint file", FlexureError), f"joint file {path}", FlexureError)
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise FlexureError(f"{path} is no joint file (format {FORMAT!r}); write one with `tensegym flexure fit`")
     with in_file(str(path)):
