@@ -30,7 +30,7 @@ MOTIONS: dict[str, Motion] = {
     "climb": Motion(Roll, {"goal": Bound("speed_lps", True, 0.05), "slope": 10.0}),
     "cross": Motion(Roll, {"roughness": 0.02}),
     "carry": Motion(Roll, {"payload": 0.5}),
-    "drop": Motion(Roll, {"drop": 1.0, "settle": 3.0, "seconds": 20.0}),
+    "drop": Motion(Roll, {"drop": 1.0, "settle": 5.0, "seconds": 20.0}),
     "steer": Motion(Navigate, {"goal": Bound("leg_speed", True, 0.28), "headings": 1.0, "seconds": 60.0}),
     "places": Motion(Navigate, {"goal": Bound("places", True, 6.0), "seconds": 60.0}),
     "path": Motion(Follow),
