@@ -1,5 +1,5 @@
-# Each target works on a bare clone with Python 3.11 and make: the first one to run sets up .venv.
-PYTHON ?= python3.11
+# Each target works on a bare clone with make and Python 3.11, 3.12 or 3.13: the first one to run sets up .venv.
+PYTHON ?= $(shell for v in 3.11 3.12 3.13; do python$$v -c "" 2>/dev/null && echo python$$v && break; done)
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
@@ -19,10 +19,10 @@ help:
 setup: $(STAMP)
 
 $(STAMP): pyproject.toml constraints.txt
-	@command -v $(PYTHON) >/dev/null || { \
-	  echo "no $(PYTHON) here: PyBullet has wheels up to Python 3.11. Install Python 3.11, or run make PYTHON=/path/to/python3.11"; exit 1; }
-	@$(PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if v == (3, 11) else \
-	  f"Python {v[0]}.{v[1]} has no PyBullet wheel and would have to compile it: run make PYTHON=python3.11")'
+	@command -v "$(PYTHON)" >/dev/null || { \
+	  echo "no $(or $(PYTHON),Python 3.11 to 3.13) here, and PyBullet has no wheels for other Pythons: run make PYTHON=/path/to/python3.13"; exit 1; }
+	@$(PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if (3, 11) <= v <= (3, 13) else \
+	  f"Python {v[0]}.{v[1]} has no PyBullet wheel, 3.11 to 3.13 have: run make PYTHON=/path/to/python3.13")'
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[train,search,dev]'
 	@touch $(STAMP)

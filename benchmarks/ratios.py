@@ -42,7 +42,8 @@ class Ratios:
             with replace_file(self.out) as file:
                 file.write(to_json(data, indent=1) + "\n")
         header = ["ours / peer", "ours", "peer", "unit", "ratio", "10 to 90 %", "bound", ""]
-        return Report(table(header, [_cells(row) for row in rows]), data, passed=all(row.passed for row in rows))
+        text = table(header, [_cells(row) for row in rows]) + f"\n{machine['substeps']}"
+        return Report(text, data, passed=all(row.passed for row in rows))
 
 
 def _cells(row: timing.Row) -> list[str]:

@@ -12,7 +12,10 @@ from typing import Any
 
 import numpy as np
 
-PACKAGES = ("tensegym", "pybullet", "numba", "numpy", "mujoco", "gymnasium", "stable-baselines3", "torch", "exudyn")
+from tensegym.validation.setting import setting
+
+PACKAGES = ("tensegym", "pybullet", "pybullet-arm64", "numba", "numpy", "mujoco", "gymnasium", "stable-baselines3",
+            "torch", "exudyn")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -84,4 +87,4 @@ def machine() -> dict[str, Any]:
             continue
     return {"processor": model, "cores": len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity")
             else os.cpu_count(), "load": os.getloadavg()[0] if hasattr(os, "getloadavg") else None,
-            "python": platform.python_version(), "versions": versions}  # fmt: skip
+            "python": platform.python_version(), "versions": versions, "substeps": setting()}  # fmt: skip

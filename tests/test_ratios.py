@@ -25,7 +25,7 @@ def test_a_part_runs_and_writes_its_rows(ratios, tmp_path):
     report = ratios("startup", rounds=1, out=tmp_path / "rows.json").run()
     data = json.loads((tmp_path / "rows.json").read_text())
     assert data == json.loads(json.dumps(report.data))
-    assert set(data["machine"]) == {"processor", "cores", "load", "python", "versions"}
+    assert set(data["machine"]) == {"processor", "cores", "load", "python", "versions", "substeps"}
     for row in data["rows"]:
         assert set(row) >= {"name", "ours", "peer", "unit", "ratio", "spread"}
         assert row["spread"][0] <= row["ratio"] <= row["spread"][1]

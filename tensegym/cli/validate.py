@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 
 from tensegym.report import Report, table
 from tensegym.validation import TOPICS
+from tensegym.validation.setting import setting
 
 
 @dataclass(frozen=True)
@@ -18,6 +19,7 @@ class Validate:
                  "pass" if c.passed else "FAIL"] for c in checks]  # fmt: skip
         passed = sum(c.passed for c in checks)
         text = table(["id", "quantity", "expected", "measured", "tolerance", ""], lines)
-        text += f"\n{passed} of {len(checks)} pass"
-        data = {"checks": [asdict(c) | {"passed": c.passed} for c in checks], "passed": passed, "total": len(checks)}
+        text += f"\n{passed} of {len(checks)} pass; {setting()}"
+        rows = [asdict(c) | {"passed": c.passed} for c in checks]
+        data = {"checks": rows, "passed": passed, "total": len(checks), "setting": setting()}
         return Report(text, data, passed=passed == len(checks))

@@ -1,0 +1,20 @@
+"""What the rows were measured on: Python, the engine, and whether substeps run compiled."""
+
+from __future__ import annotations
+
+import platform
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, version
+
+from tensegym.bullet import c_interface
+
+
+def setting() -> str:
+    """One line on this process, as "Python 3.13.0, pybullet-arm64 3.2.8, compiled substeps"."""
+    engine = "PyBullet"
+    for name in c_interface.KNOWN_VERSIONS:
+        with suppress(PackageNotFoundError):
+            engine = f"{name} {version(name)}"
+    loop = "compiled substeps" if c_interface.AVAILABLE else (
+        f"substeps by Python's calls, to the same bits in more time (compiled ones know {c_interface.known_names()})")
+    return f"Python {platform.python_version()}, {engine}, {loop}"
