@@ -79,7 +79,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
     motion such as roll, climb or cross, a table as in a task file, ``module:Class``, or a Task), render_mode (None,
     rgb_array, human), vary, episodes_per_design; and in place of the task's own: dt [s], settle [s], slope [deg]
     (uphill along the wanted direction; what the robot sees of it is how its parts move), reward (weights to change, see
-    RewardWeights).
+    RewardWeights), disturb (ranges of what goes otherwise than designed, see `tensegym.tasks.disturbance`).
 
     ``reset(options=...)``: face (index), heading [rad], direction [rad], and design, which puts another robot with as
     many nodes, cables and drives into the same environment.
@@ -105,16 +105,17 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         episodes_per_design: int = 1,
         slope: float | None = None,
         task: str | dict[str, Any] | Task = "roll",
+        disturb: dict[str, Any] | None = None,
     ) -> None:
         EzPickle.__init__(
             self, design, observation, control_period, dt, settle, reward, render_mode, vary, episodes_per_design,
-            slope, task,
+            slope, task, disturb,
         )
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise DesignError(f"render_mode = {render_mode!r} is not one of None, rgb_array, human")
         if type(episodes_per_design) is not int or episodes_per_design < 0:
             raise DesignError(f"episodes_per_design = {episodes_per_design!r} must be a whole number, 0 or more")
-        self.task = as_task(task).changed(dt=dt, settle=settle, slope=slope, reward=reward)
+        self.task = as_task(task).changed(dt=dt, settle=settle, slope=slope, reward=reward, disturb=disturb)
         self.dt = self.task.dt
         self.substeps = whole_steps(control_period, self.dt)
         self.render_mode = render_mode
@@ -123,7 +124,10 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         self._base = self.task.equipped(as_design(design))
         self._variation = None if vary is None else parse_variation(vary, self._base)
         self._episodes_per_design, self._episodes_left = episodes_per_design, 0
+        self._nominal, self._factors = self._base, dict[str, float]()
+        self.task.disturb.check(self._base)
         self.robot, self.observation = self._build(self._base)
+        self.task.disturb.sensors(np.random.default_rng(0)).check(self.observation.parts)
         self.observation_space: spaces.Box = _box(self.observation)
         self.action_space: spaces.Box = spaces.Box(-1.0, 1.0, (len(self.robot.drives),), dtype=np.float32)
         self.episode: Episode | None = None
@@ -148,23 +152,34 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
             self._use(self.robot.design)
         design, redraw = options.pop("design", None), False
         if design is not None:
-            self._use(self.task.equipped(as_design(design)))
+            nominal = self.task.equipped(as_design(design))
+            self.task.disturb.check(nominal)
+            self._use(nominal)
+            self._nominal = nominal
         elif self._variation and self._episodes_per_design:
             redraw = seed is not None or not self._episodes_left
             self._episodes_left = (self._episodes_per_design if redraw else self._episodes_left) - 1
         episode = self._begin(options, redraw)
-        return self._seen(episode), episode.start._asdict() | ({"redrawn": self._redrawn} if self._redrawn else {})
+        info = episode.start._asdict() | ({"redrawn": self._redrawn} if self._redrawn else {})
+        if episode.faults:
+            info["disturbed"] = self._factors | episode.faults.as_dict()
+        return self._seen(episode), info
 
     def _begin(self, options: dict[str, Any], redraw: bool) -> Episode:
         """An episode whose robot has come to rest: another design of the variation where one does not."""
+        disturb = self.task.disturb
         for self._redrawn in range(REDRAWS):
             if redraw and self._variation:
                 self._use(self._variation.draw(self._base, self.np_random))
+                self._nominal = self.robot.design
+            if disturb.rebuilds:
+                built, self._factors = disturb.draw(self._nominal, self.np_random)
+                self._use(built)
             self.episode = Episode(self.robot, self.task, self.np_random, options)
             if not self.episode.diverged:
                 return self.episode
             redraw = bool(self._variation and self._episodes_per_design)
-            if not redraw:
+            if not (redraw or disturb.rebuilds):
                 break
         raise SimulationError(f"no episode can begin: the robot {self.robot.design.name!r} diverged "
                               f"{self.episode.ended if self.episode else ''}; "

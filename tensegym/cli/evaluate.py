@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
 from tensegym.control.table import make_controller
+from tensegym.errors import InputError
 from tensegym.files import VERSION, lock_folder, write_text
 from tensegym.report import Report, table, to_json
 from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP
+from tensegym.tables import fill, in_file, read_toml
+from tensegym.tasks.disturbance import Disturbance
 from tensegym.tasks.figures import GaitRecorder, draw_gait, write_video
 from tensegym.tasks.motions import load_task
 from tensegym.tasks.policy_trials import FIRST_SEED, baseline_setups, policy_setup
@@ -33,6 +36,9 @@ class Evaluate:
     task: str | None = None
     """A motion (roll, climb, cross, step, steer, places, path) or a TOML file with a [task] table, in place of the
     policy's own task."""
+    disturb: Path | None = None
+    """A TOML file of what goes otherwise than designed, as in mass = 0.2 (see tensegym.tasks.disturbance); default: as
+    in the training."""
     seconds: Annotated[float, Within(1.0, 3600.0, "s")] | None = None
     """Length of an episode [s]; default: 20, or the given task's own."""
     dt: Annotated[float, Within(LEAST_TIME_STEP, LARGEST_TIME_STEP, "s")] | None = None
@@ -53,6 +59,10 @@ class Evaluate:
             self.policy, seconds=self.seconds, dt=self.dt, observation=self.observation,
             task=None if self.task is None else load_task(self.task),
         )  # fmt: skip
+        if self.disturb is not None:
+            with in_file(str(self.disturb)):
+                disturb = fill(Disturbance, read_toml(self.disturb, "disturbance", InputError), "disturb", InputError)
+            setup = replace(setup, task=setup.task.changed(disturb=disturb))
         check_setup(setup)  # a policy that does not fit fails here, before anything is written
         with lock_folder(self.out):
             return self._evaluate(setup)

@@ -30,6 +30,7 @@ class Part:
     rows: int
     width: int  # entries a row
     bound: float
+    scale: float = 1.0  # what an entry of 1 is in SI units, where sensors may be wrong
 
     @property
     def size(self) -> int:
@@ -55,8 +56,11 @@ class Observation:
         raise NotImplementedError
 
     def see(self, robot: TensegrityRobot, bearing: Bearing, reading: Reading | None = None) -> NDArray[np.float32]:
-        """(size,) the observation; pass the robot's reading where there is one already."""
-        return self.values(robot, read(robot) if reading is None else reading, bearing).astype(np.float32)
+        """(size,) the observation through the robot's sensors; pass its reading where there is one already."""
+        values = self.values(robot, read(robot) if reading is None else reading, bearing)
+        if robot.sensors is not None:
+            values = robot.sensors.through(values, self.parts)
+        return values.astype(np.float32)
 
 
 def _drive_readings(robot: TensegrityRobot) -> list[FloatArray]:
@@ -64,6 +68,11 @@ def _drive_readings(robot: TensegrityRobot) -> list[FloatArray]:
     angle = robot.drive_angles / robot.command_limit
     speed, current = drive[:, drives.ROTOR_SPEED] / design.speed_limit, drive[:, drives.CURRENT] / design.current_limit
     return [2 * angle - 1, speed, current]
+
+
+def _angle_scale(robot: TensegrityRobot) -> float:
+    """Spool angle [rad] that a unit of the observed one is."""
+    return float(robot.command_limit.mean()) / 2 if len(robot.command_limit) else 1.0
 
 
 ANGLE_BOUND = 2.0  # a spool overshoots its commanded range by less than half of it
@@ -87,7 +96,7 @@ class FullObservation(Observation):
             Part("node position", "node", nodes, 3, NODE_REACH),
             Part("node velocity", "node", nodes, 3, SPEED_BOUND / self.length),
             Part("foot contact", "node", nodes, 1, 1.0),
-            Part("drive angle", "drive", wound, 1, ANGLE_BOUND),
+            Part("drive angle", "drive", wound, 1, ANGLE_BOUND, _angle_scale(robot)),
             Part("drive speed", "drive", wound, 1, 1.0),
             Part("drive current", "drive", wound, 1, 1.0),
             Part("tension", "cable", cables, 1, most),
@@ -119,8 +128,8 @@ class OnboardObservation(Observation):
         self.rate_scale = 5.0  # rad/s
         self.parts = (
             Part("rod axis", "rod", rods, 3, 1.0),
-            Part("rod rate", "rod", rods, 3, 4 * SPEED_BOUND / robot.design.length / self.rate_scale),
-            Part("drive angle", "drive", wound, 1, ANGLE_BOUND),
+            Part("rod rate", "rod", rods, 3, 4 * SPEED_BOUND / robot.design.length / self.rate_scale, self.rate_scale),
+            Part("drive angle", "drive", wound, 1, ANGLE_BOUND, _angle_scale(robot)),
             Part("drive speed", "drive", wound, 1, 1.0),
             Part("drive current", "drive", wound, 1, 1.0),
         )

@@ -106,6 +106,10 @@ class GaitMeter:
         total = robot.energies(velocities).total
         self._excess = max(self._excess, total / allowed - 1 if allowed else float(total > 0))
 
+    def exchange(self, energy: float) -> None:
+        """Energy [J] that came from outside, and not through the drives."""
+        self._start_energy += energy
+
     def turn(self, direction: FloatArray) -> None:
         """From now on way counts along another direction (2,)."""
         if np.array_equal(direction, self.direction):

@@ -26,6 +26,8 @@ from tensegym.physics.substep import GROUND_TOLERANCE, reset_springs
 from tensegym.physics.terrain import Ground, distances_to_ground
 from tensegym.structure.faces import Faces, hull_faces
 
+from .sensors import Sensors
+
 
 class RobotState:
     """A design's bodies in a world and the arrays of its substeps, which nothing else writes to.
@@ -38,6 +40,9 @@ class RobotState:
         self.design, self.model, self.world, self.dt = design, model, world, dt
         self.gravity = np.array([0.0, 0.0, -world.scene.gravity])
         self.time = 0.0
+        self.sensors: Sensors | None = None
+        """What observations come through; None for exact ones. A reset takes them away."""
+        self._as_made = model.spring_params.copy(), model.drive_params.copy()
         self._ground, self._out = ground, new_out(model)
         self._state = state = new_state(model, world.poses, world.angles)
         cables = model.first_flexure
@@ -47,11 +52,12 @@ class RobotState:
         self.flexure_moments = state.tensions[cables:]
 
     def _restart(self, pin_rates: FloatArray, velocities: FloatArray | None) -> None:
-        """Time and totals zero, drives and cables as at rest, where the bodies stand now.
+        """Time and totals zero, drives and cables as at rest and as they were made, where the bodies stand now.
 
         pin_rates (p,) [rad/s]; velocities (b, 6) of the bodies, None at rest.
         """
-        state = self._state
+        state, self.sensors = self._state, None
+        self.model.spring_params[:], self.model.drive_params[:] = self._as_made
         state.natural[:] = self.model.rest_lengths
         state.drives[:], state.totals[:], self.time = 0.0, 0.0, 0.0
         state.last_poses[:] = self.poses_in_world

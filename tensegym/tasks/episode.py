@@ -14,6 +14,7 @@ from tensegym.robot.gait import NO_GAIT, DriveMeter, GaitMeter, GaitMetrics
 from tensegym.robot.reading import NODE_REACH, Reading, farthest_node, read
 from tensegym.robot.robot import SPEED_BOUND, TensegrityRobot
 
+from .faults import Faults
 from .goal import Heading
 from .start import Start, check_options, draw_start
 from .task import Task
@@ -65,6 +66,10 @@ class Episode:
             return
         self.bearing: Bearing = self.goal.bearing(robot)
         """As the controller is told it now."""
+        self.faults: Faults | None = None
+        if task.disturb.on:
+            own = np.random.default_rng(rng.integers(2**63))
+            self.faults, robot.sensors = Faults(task.disturb, robot, own), task.disturb.sensors(own)
         self.meter = GaitMeter(robot, self.bearing.direction)
         self.gait = self.meter.metrics()
         self._totals, self._time = robot.totals(), robot.time
@@ -78,6 +83,9 @@ class Episode:
         """Command spool angles (w,) [rad], hold them for so many time steps; returns the signed reward terms."""
         robot = self.robot
         try:
+            if self.faults:
+                angles = self.faults.command(angles)
+                self.meter.exchange(self.faults.strike(robot, substeps * robot.dt))
             robot.command(angles)
             self._step(substeps, watcher)
             reading = read(robot)

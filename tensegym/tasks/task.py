@@ -14,9 +14,10 @@ from tensegym.errors import DesignError, InputError
 from tensegym.physics.terrain import Terrain, longest_reach
 from tensegym.robot.gait import GaitMetrics
 from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityRobot
-from tensegym.tables import Checked, bounded, noted, parsed
+from tensegym.tables import Checked, bounded, fill, noted, parsed
 
 from .bound import Bound
+from .disturbance import Disturbance
 from .goal import Goal, Heading
 from .progress import Progress
 from .reward import RewardWeights
@@ -49,6 +50,7 @@ class Task(Checked, error=DesignError):
     roughness: float = bounded(0, 0.2, 0.0, "m", "root mean square height of the ground's bumps")
     correlation_length: float = bounded(0.1, 5, 0.3, "m", "of the bumps")
     payload: float = bounded(0, 100, 0.0, "kg", "mass of the payload a design must carry; 0 asks for none")
+    disturb: Disturbance = noted(Disturbance(), "what goes otherwise than designed, drawn anew each episode")
     reward: RewardWeights = noted(RewardWeights(), "weights of the reward's terms")
 
     MEASURES: ClassVar[tuple[str, ...]] = ()
@@ -84,8 +86,11 @@ class Task(Checked, error=DesignError):
         return design.with_(payload=replace(design.payload or Payload(), mass=self.payload))
 
     def changed(self: Own, **changes: Any) -> Own:
-        """A copy with the fields that are not None replaced; ``reward`` may be a dict of weights to change."""
+        """A copy with the fields that are not None replaced; ``reward`` may be a dict of weights to change,
+        ``disturb`` one of ranges."""
         given = {name: value for name, value in changes.items() if value is not None}
+        if isinstance(given.get("disturb"), dict):
+            given["disturb"] = fill(Disturbance, given["disturb"], "disturb", DesignError, self.disturb)
         if isinstance(given.get("reward"), dict):
             given["reward"] = self.reward.changed(given["reward"])
         return replace(self, **given)

@@ -18,6 +18,7 @@ from tensegym.design.variation import Variation
 from tensegym.processes import process_map
 from tensegym.robot.robot import TensegrityRobot
 
+from .episode import Episode
 from .rollout import Result, rollout, whole_steps
 from .task import Task
 
@@ -49,11 +50,15 @@ class Setup:
 
 def check_setup(setup: Setup) -> None:
     """Raise what building it, or putting its controller on its robot, raises; nothing is simulated but the start."""
+    setup.task.disturb.check(setup.design)
     with closing(setup.robot()) as robot:
         controller = make_controller(setup.controller)
         whole_steps(controller.period, setup.task.dt)
         if setup.controller.get("kind") != "walker":  # which may tabulate its robot first
+            episode = Episode(robot, setup.task, np.random.default_rng(0))
             controller.begin(robot, 0)
+            if not episode.diverged:
+                controller.angles(robot, episode.bearing)
 
 
 def run_trials(setup: Setup, seeds: Sequence[int], *, jobs: int = 0, quiet: bool = False) -> list[Result]:
@@ -83,13 +88,17 @@ def _episodes(setup: Setup, seeds: tuple[int, ...]) -> list[Result]:
 
 
 def iterate(setup: Setup, controller: Controller, seeds: Sequence[int]) -> Generator[Result, None, None]:
-    """Episodes in turn, in this process; on one robot where designs do not vary and none has diverged."""
+    """Episodes in turn, in this process; on one robot where it stays the same and none has diverged."""
     robot: TensegrityRobot | None = None
+    disturb = setup.task.disturb
+    disturb.check(setup.design)
     try:
         for seed in seeds:
             rng = np.random.default_rng(seed)
             design = setup.vary.draw(setup.design, rng) if setup.vary else setup.design
-            if robot is None or setup.vary:
+            if disturb.rebuilds:
+                design, _ = disturb.draw(design, rng)
+            if robot is None or setup.vary or disturb.rebuilds:
                 if robot:
                     robot.close()
                 robot = setup.robot(design)

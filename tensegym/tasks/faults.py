@@ -1,0 +1,73 @@
+"""Faults: what goes wrong with a robot in the course of one episode."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+from tensegym.arrays import FloatArray
+from tensegym.design.parameters import Drive
+from tensegym.physics.model import TWO_WAY
+from tensegym.robot.robot import TensegrityRobot
+
+from .disturbance import Disturbance
+
+_SNAPPED = 1e3  # m: the natural length of a cable that never pulls again
+_COLUMN = {field.name: column for column, field in enumerate(fields(Drive))}
+
+
+class Faults:
+    """Those of one episode, drawn when it begins; the robot's next reset mends them.
+
+    Args:
+        disturb: their ranges, which fit the robot.
+        robot: that is to have them.
+        rng: draws them.
+    """
+
+    def __init__(self, disturb: Disturbance, robot: TensegrityRobot, rng: np.random.Generator) -> None:
+        self._disturb, self._rng = disturb, rng
+        drives, cables = rng.permutation(len(robot.drives)), rng.permutation(robot.model.first_driven)
+        counts = np.cumsum([disturb.weak, disturb.stuck, disturb.dead])
+        self.weak, self.stuck, self.dead = np.split(drives[: counts[-1]], counts[:-1])
+        snapping = [(0.0, number - 1) for number in disturb.cables]
+        snapping += [(float(rng.uniform(0, disturb.snap_by)), int(cable)) for cable in cables[: disturb.snapped]]
+        self._snapping = sorted(snapping)
+        self.late = int(rng.integers(disturb.done_late + 1))
+        self._commands: deque[FloatArray] = deque([np.zeros(len(drives))] * self.late)
+        self._clock = 0.0
+        params = robot.model.drive_params
+        params[self.weak, _COLUMN["current_limit"]] *= disturb.weak_to
+        params[self.stuck, _COLUMN["speed_limit"]] = 0.0
+        params[self.dead, _COLUMN["voltage_limit"]] = 0.0
+
+    def command(self, angles: FloatArray) -> FloatArray:
+        """What comes of a command (w,): one that was given before, where they come late."""
+        self._commands.append(angles)
+        return self._commands.popleft()
+
+    def strike(self, robot: TensegrityRobot, seconds: float) -> float:
+        """What happens at the start of a control step of so many seconds; returns the energy it brings [J]."""
+        before = robot.energies().total
+        struck = False
+        while self._snapping and self._snapping[0][0] <= self._clock:
+            cable = self._snapping.pop(0)[1]
+            robot.model.spring_params[cable, TWO_WAY] = 0.0
+            robot.natural_lengths[cable] = _SNAPPED
+            struck = True
+        if self._disturb.pushes and self._rng.random() < self._disturb.pushes * seconds / 60:
+            angle = self._rng.uniform(-np.pi, np.pi)
+            robot.push(self._disturb.push * np.array([np.cos(angle), np.sin(angle), 0.0]))
+            struck = True
+        self._clock += seconds
+        return robot.energies().total - before if struck else 0.0
+
+    def as_dict(self) -> dict[str, Any]:
+        """What was drawn, in plain types; drives and cables by number from 1."""
+        return {
+            "weak": (self.weak + 1).tolist(), "stuck": (self.stuck + 1).tolist(), "dead": (self.dead + 1).tolist(),
+            "snapping": {str(cable + 1): time for time, cable in self._snapping}, "done_late": self.late,
+        }  # fmt: skip
