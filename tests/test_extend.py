@@ -24,7 +24,10 @@ def test_the_worked_example_runs(tmp_path):
     printed = [run(tmp_path, "-c", script) for script in scripts]
     assert "energy" in printed[0] and "left the circle" in printed[1]
     run(tmp_path, "-m", "tensegym", "design", "run", "--task", "leave.toml", "--out", "found", "--budget", "3")
-    assert "3" in run(tmp_path, "-m", "tensegym", "design", "status", "--folder", "found", "--json")
+    status = ["-m", "tensegym", "design", "status", "--folder", "found", "--json"]
+    assert '"trials": 3' in run(tmp_path, *status, "--import", "leave")
+    refused = subprocess.run([sys.executable, *status], cwd=tmp_path, capture_output=True, text=True)
+    assert refused.returncode == 2 and "'leave:Leave', which is code" in refused.stderr
 
 
 def test_the_example_is_as_short_as_it_says():

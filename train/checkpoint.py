@@ -136,6 +136,9 @@ def last_state(out: Path) -> TrainState:
     if newest != checkpoint_folder(out, state.steps) and (whole or state.steps):
         raise InputError(one_line(f"{newest / STATE}: steps = {state.steps} is another checkpoint's; one of that many "
                                   f"stands in {checkpoint_folder(out, state.steps)}"))  # fmt: skip
+    if state.steps:  # what is none is told before anything is started
+        read_policy(newest)
+        read_arrays(newest / OPTIMISER)
     read_cells(out / CURVE)
     return state
 

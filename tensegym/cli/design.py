@@ -126,7 +126,7 @@ def open_search(folder: Path, storage: str | None = None) -> tuple[Problem, Stor
     if storage is None and "***" in kept:
         raise InputError(f"the search in {folder} is kept at {kept}, and passwords are not: give --storage URL again")
     store = Store(folder, None, storage or kept or None)
-    return problem_from(store.problem_text, str(folder)), store
+    return problem_from(store.problem_text, str(folder), kept=True), store
 
 
 def _score(problem: Problem, outcome: TrialResult) -> float:

@@ -11,7 +11,7 @@ import signal
 import sys
 from typing import Any
 
-from tensegym.errors import TensegymError, one_line
+from tensegym.errors import InputError, TensegymError, one_line
 from tensegym.report import Report, to_json
 
 COMMANDS: dict[str, tuple[str, str]] = {
@@ -32,7 +32,8 @@ EXTRAS = {"optuna": "search", "cmaes": "search", "sqlalchemy": "search", "ray": 
 def usage(commands: dict[str, tuple[str, str]], program: str) -> str:
     width = max(map(len, commands), default=0)
     rows = [f"  {name:<{width}}  {text}" for name, (_, text) in commands.items()]
-    tail = f"`{program} COMMAND --help` lists its options; every command takes --json."
+    tail = (f"`{program} COMMAND --help` lists its options; every command takes --json, and --import MODULE where a "
+            "folder names a task of your own.")  # fmt: skip
     return "\n".join([f"usage: {program} COMMAND [options]", "", "commands:", *rows, "", tail])
 
 
@@ -64,9 +65,8 @@ def run(argv: list[str], commands: dict[str, tuple[str, str]] = COMMANDS, progra
 
         from .options import check_ranges
 
-        as_json = "--json" in rest
-        command = tyro.cli(target, args=[a for a in rest if a != "--json"], prog=f"{program} {name} [--json]",
-                           config=(tyro.conf.OmitArgPrefixes,))
+        words, as_json = _common(rest)
+        command = tyro.cli(target, args=words, prog=f"{program} {name} [--json]", config=(tyro.conf.OmitArgPrefixes,))
         check_ranges(command)
         report: Report = command.run()
     except ModuleNotFoundError as error:
@@ -83,6 +83,24 @@ def run(argv: list[str], commands: dict[str, tuple[str, str]] = COMMANDS, progra
         return 2
     print(to_json(report.data) if as_json else report.text)
     return 0 if report.passed else 1
+
+
+def _common(words: list[str]) -> tuple[list[str], bool]:
+    """Words less the options of all commands, and whether to print JSON; imports what --import names."""
+    left, rest = list[str](), iter(words)
+    for word in rest:
+        if word == "--import":
+            _import(next(rest, ""))
+        elif word != "--json":
+            left.append(word)
+    return left, "--json" in words
+
+
+def _import(module: str) -> None:
+    try:
+        importlib.import_module(module)
+    except Exception as error:  # of a module that is anyone's
+        raise InputError(f"--import {module!r}: {type(error).__name__}: {error}") from error
 
 
 class _Terminated(KeyboardInterrupt):

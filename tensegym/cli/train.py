@@ -13,6 +13,7 @@ import yaml
 from tensegym.errors import InputError
 from tensegym.files import VERSION, is_empty, lock_folder, write_json, write_text
 from tensegym.report import Report, table
+from tensegym.tasks.motions import refuse_code
 from tensegym.train.checkpoint import last_state
 from tensegym.train.config import TrainConfig, load_config
 from tensegym.train.curve import CURVE, FIELDS, draw_curve, read_curve
@@ -73,6 +74,7 @@ class Train:
         """The run in a folder, with a longer schedule if steps are given; its state keeps the ends of its stages."""
         state = last_state(out)
         config = load_config(str(out / "config.yaml"))
+        refuse_code(config.env.get("task"), f"the training {out}")
         if self.steps is not None:
             if self.steps <= state.steps:
                 raise InputError(f"steps = {self.steps} must be above the {state.steps} that {out} stands at")

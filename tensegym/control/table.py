@@ -30,7 +30,7 @@ from tensegym.tables import as_text, bounded, fill, noted, show
 
 from .controller import Controller
 from .cpg import Cpg, CpgController
-from .policy import PolicyController, policy_folder, shipped
+from .policy import PolicyController, policy_env, policy_folder, shipped
 from .policy_file import read_policy
 from .random_commands import RandomCommands
 from .tipping import Tip
@@ -64,6 +64,7 @@ def with_defaults(table: Mapping[str, Any]) -> dict[str, Any]:
     policy = {"policy": table.get("policy", "")} if kind == "cpg" else {}
     if named := policy.get("policy") or getattr(parameters, "policy", ""):
         read_policy(policy_folder(named))
+        policy_env(named)
     besides = {name: table[name] for name in ("tips", "period") if name in table and kind == "walker"}
     return {"kind": kind, **policy, **besides, **asdict(parameters)}
 

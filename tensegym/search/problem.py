@@ -40,7 +40,7 @@ from tensegym.tables import (
     show,
 )
 from tensegym.tasks.bound import Bound
-from tensegym.tasks.motions import as_task
+from tensegym.tasks.motions import as_task, refuse_code
 from tensegym.tasks.task import Task
 
 from .measure import Objective
@@ -128,10 +128,12 @@ def load_problem(name: str) -> Problem:
     return problem_from(read_text(name, "task file", InputError), name)
 
 
-def problem_from(text: str, name: str) -> Problem:
-    """Parse a task file. Raises InputError naming it."""
+def problem_from(text: str, name: str, *, kept: bool = False) -> Problem:
+    """Parse a task file, or the copy that a search has ``kept`` of its own. Raises InputError naming it."""
     data = parse_toml(text, name, InputError)
     try:
+        if kept:
+            refuse_code(data.get("task"), "the search")
         known(data, _TABLES, "the task file", InputError)
         task = as_task(data.get("task"))
         tables = _start(task, data)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import importlib
+import sys
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from tensegym.errors import InputError
-from tensegym.tables import fill, in_file, one_line, read_toml
+from tensegym.tables import fill, in_file, one_line, read_toml, show
 
 from .bound import Bound
 from .follow import Follow
@@ -70,6 +71,18 @@ def as_task(value: Any) -> Task:
         given = table.get("motion") if isinstance(table, Mapping) else table
         raise InputError(f"task motion {str(given)[:100]!r} is not one of {', '.join(MOTIONS)}, or module:Class")
     return _task_from(table)
+
+
+def refuse_code(task: Any, where: str) -> None:
+    """Look at a task that a folder's file names: reading a run or a search imports no code on its word alone.
+
+    Raises InputError, naming the file by ``where``, for a ``module:Class`` whose module this program has not imported.
+    """
+    motion = task.get("motion") if isinstance(task, Mapping) else task
+    module = motion.partition(":")[0] if isinstance(motion, str) and ":" in motion else ""
+    if module and module not in sys.modules:
+        raise InputError(one_line(f"{where} names the task {show(motion)}, which is code; if you know it, import it: "
+                                  f"--import {module[:60]}"))  # fmt: skip
 
 
 def _task_from(table: Mapping[str, Any]) -> Task:

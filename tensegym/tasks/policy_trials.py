@@ -10,7 +10,7 @@ from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import as_design, design_to_dict
 from tensegym.design.variation import parse_variation
 
-from .motions import as_task
+from .motions import as_task, refuse_code
 from .task import Task
 from .trials import Setup, run_trials, summarise
 
@@ -37,6 +37,7 @@ def policy_setup(
     """
     env = policy_env(policy)
     if task is None:
+        refuse_code(env.get("task"), f"the policy {policy}")
         own = {name: env.get(name) for name in ("dt", "settle", "slope", "reward")}
         task = as_task(env.get("task", "roll")).changed(**own, seconds=EPISODE_SECONDS)
     seconds = task.seconds if seconds is None else seconds

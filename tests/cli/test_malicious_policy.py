@@ -1,9 +1,12 @@
 """A policy from a stranger under every command that takes one: nothing in it runs."""
 
+import io
 import json
 import pickle
+import re
 import shutil
 import zipfile
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +20,8 @@ from tensegym.train.distil import Distil
 from tests.conftest import assert_refused
 
 SHIPPED = shipped("onboard")
-SCENES = ("stable-baselines3", "pickle in the weights", "pickle for the weights", "names with paths", "settings")
+SCENES = ("stable-baselines3", "pickle in the weights", "pickle for the weights", "names with paths", "settings",
+          "a task that is code", "yaml tags", "links to nowhere", "a bomb", "numbers beyond all")  # fmt: skip
 
 
 class Runs:
@@ -30,8 +34,17 @@ class Runs:
         return Path.touch, (self.mark,)
 
 
+@cache
+def bomb():
+    """Some hundred kB that unpack to 300 MB."""
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("log_std.npy", bytes(300 << 20))
+    return file.getvalue()
+
+
 @pytest.fixture(params=SCENES)
-def stranger(request, tmp_path):
+def stranger(request, tmp_path, monkeypatch):
     """A policy's folder that would leave a mark, and where."""
     folder, mark = tmp_path / "stranger", tmp_path / "ran"
     shutil.copytree(SHIPPED, folder)
@@ -53,6 +66,23 @@ def stranger(request, tmp_path):
     elif request.param == "names with paths":
         with zipfile.ZipFile(folder / "weights.npz", "a") as archive:
             archive.writestr("../../ran", b"x")
+    elif request.param == "a task that is code":
+        (tmp_path / "evil.py").write_text(f"open({str(mark)!r}, 'w')")
+        monkeypatch.syspath_prepend(str(tmp_path))
+        own = yaml.safe_load((folder / "config.yaml").read_text())
+        own["env"]["task"] = {"motion": "evil:Task"}
+        (folder / "config.yaml").write_text(yaml.safe_dump(own))
+    elif request.param == "yaml tags":
+        (folder / "config.yaml").write_text(f"env: !!python/object/apply:pathlib.Path.touch [{mark}]")
+    elif request.param == "links to nowhere":
+        for name in ("weights.npz", "policy.json", "config.yaml"):
+            (folder / name).unlink()
+            (folder / name).symlink_to(name)
+    elif request.param == "a bomb":
+        (folder / "weights.npz").write_bytes(bomb())
+    elif request.param == "numbers beyond all":
+        text = (folder / "policy.json").read_text()
+        (folder / "policy.json").write_text(re.sub(r'"clip": [^,]*', '"clip": ' + "9" * 400, text))
     else:
         data = json.loads((folder / "policy.json").read_text())
         (folder / "policy.json").write_text(json.dumps(data | {"observations": str(tmp_path / "elsewhere.json")}))
@@ -69,8 +99,10 @@ def config(tmp_path, **fields):
 
 
 @pytest.mark.parametrize("command", ["roll", "evaluate", "train", "resume", "design", "distil"])
-def test_nothing_in_a_strangers_policy_runs(command, stranger, tmp_path, cli):
+def test_nothing_in_a_strangers_policy_runs(command, stranger, tmp_path, cli, request):
     out = tmp_path / "out"
+    if "code" in request.node.name and command in ("train", "design"):
+        return  # which give the policy a task of their own
     if command in ("roll", "evaluate"):
         result = cli(command, "--policy", stranger, "--out", out)
     elif command == "train":
@@ -79,7 +111,7 @@ def test_nothing_in_a_strangers_policy_runs(command, stranger, tmp_path, cli):
         (stranger / "state.json").write_text(json.dumps({"seed": 0, "steps": 6400, "seconds": 1.0, "updates": 1}))
         checkpoint = stranger / "checkpoints" / "000006400"
         checkpoint.parent.mkdir()
-        shutil.copytree(stranger, checkpoint, ignore=shutil.ignore_patterns("checkpoints"))
+        shutil.copytree(stranger, checkpoint, ignore=shutil.ignore_patterns("checkpoints"), symlinks=True)
         result = cli("train", "--resume", "--out", stranger)
     elif command == "design":
         (tmp_path / "task.toml").write_text(
