@@ -23,10 +23,11 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "validate": ("tensegym.cli.validate:Validate", "physics against closed forms: expected, measured, tolerance"),
     "train": ("tensegym.cli.train:Train", "train a rolling policy with PPO; resumable"),
     "evaluate": ("tensegym.cli.evaluate:Evaluate", "judge a policy and the baselines over many seeds"),
+    "policy": ("tensegym.cli.policy:COMMANDS", "a policy for a robot's own computer: export"),
     "design": ("tensegym.cli.design:COMMANDS", "search for a design that makes a motion: run, resume, status"),
     "flexure": ("tensegym.cli.flexure:COMMANDS", "flexible joints: table, curves, fit, track, solve"),
 }
-EXTRAS = {"optuna": "search", "cmaes": "search", "sqlalchemy": "search", "ray": "cluster"}
+EXTRAS = {"optuna": "search", "cmaes": "search", "sqlalchemy": "search", "ray": "cluster", "onnx": "onnx"}
 
 
 def usage(commands: dict[str, tuple[str, str]], program: str) -> str:

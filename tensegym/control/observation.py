@@ -30,7 +30,8 @@ class Part:
     rows: int
     width: int  # entries a row
     bound: float
-    scale: float = 1.0  # what an entry of 1 is in SI units, where sensors may be wrong
+    scale: float = 1.0  # what an entry of 1 is in SI units
+    unit: str = ""
 
     @property
     def size(self) -> int:
@@ -70,12 +71,17 @@ def _drive_readings(robot: TensegrityRobot) -> list[FloatArray]:
     return [2 * angle - 1, speed, current]
 
 
-def _angle_scale(robot: TensegrityRobot) -> float:
-    """Spool angle [rad] that a unit of the observed one is."""
-    return float(robot.command_limit.mean()) / 2 if len(robot.command_limit) else 1.0
-
-
 ANGLE_BOUND = 2.0  # a spool overshoots its commanded range by less than half of it
+
+
+def _drive_parts(robot: TensegrityRobot) -> list[Part]:
+    wound, drive = len(robot.drives), robot.design.drive
+    range_of_angles = float(robot.command_limit.mean()) if wound else 2.0
+    return [
+        Part("drive angle", "drive", wound, 1, ANGLE_BOUND, range_of_angles / 2, "rad"),  # from the middle of its range
+        Part("drive speed", "drive", wound, 1, 1.0, drive.speed_limit, "rad/s"),
+        Part("drive current", "drive", wound, 1, 1.0, drive.current_limit, "A"),
+    ]
 
 
 class FullObservation(Observation):
@@ -93,13 +99,11 @@ class FullObservation(Observation):
         reach = 2 * NODE_REACH * self.length
         most = float((cable[:, 0] * reach + cable[:, 1] * SPEED_BOUND).max()) / self.tension_scale
         self.parts = (
-            Part("node position", "node", nodes, 3, NODE_REACH),
-            Part("node velocity", "node", nodes, 3, SPEED_BOUND / self.length),
+            Part("node position", "node", nodes, 3, NODE_REACH, self.length, "m"),
+            Part("node velocity", "node", nodes, 3, SPEED_BOUND / self.length, self.length, "m/s"),
             Part("foot contact", "node", nodes, 1, 1.0),
-            Part("drive angle", "drive", wound, 1, ANGLE_BOUND, _angle_scale(robot)),
-            Part("drive speed", "drive", wound, 1, 1.0),
-            Part("drive current", "drive", wound, 1, 1.0),
-            Part("tension", "cable", cables, 1, most),
+            *_drive_parts(robot),
+            Part("tension", "cable", cables, 1, most, self.tension_scale, "N"),
         )
 
     def values(self, robot: TensegrityRobot, reading: Reading, bearing: Bearing) -> FloatArray:
@@ -125,13 +129,11 @@ class OnboardObservation(Observation):
     def __init__(self, robot: TensegrityRobot) -> None:
         rods, wound = len(robot.design.standing.rods), len(robot.drives)
         self.rods = rods
-        self.rate_scale = 5.0  # rad/s
+        self.rate_scale, fastest = 5.0, 4 * SPEED_BOUND / robot.design.length  # rad/s
         self.parts = (
             Part("rod axis", "rod", rods, 3, 1.0),
-            Part("rod rate", "rod", rods, 3, 4 * SPEED_BOUND / robot.design.length / self.rate_scale, self.rate_scale),
-            Part("drive angle", "drive", wound, 1, ANGLE_BOUND, _angle_scale(robot)),
-            Part("drive speed", "drive", wound, 1, 1.0),
-            Part("drive current", "drive", wound, 1, 1.0),
+            Part("rod rate", "rod", rods, 3, fastest / self.rate_scale, self.rate_scale, "rad/s"),
+            *_drive_parts(robot),
         )
 
     def values(self, robot: TensegrityRobot, reading: Reading, bearing: Bearing) -> FloatArray:
