@@ -92,7 +92,7 @@ class FullObservation(Observation):
     """
 
     def __init__(self, robot: TensegrityRobot) -> None:
-        nodes, wound, cables = len(robot.model.node_bodies), len(robot.drives), len(robot.tensions)
+        nodes, cables = len(robot.model.node_bodies), len(robot.tensions)
         self.length = robot.design.length
         cable = robot.model.spring_params[:, STIFFNESS : DAMPING + 1]
         self.tension_scale = max(1.0, 5 * robot.design.elastic_cable.pretension)
@@ -127,7 +127,7 @@ class OnboardObservation(Observation):
     """
 
     def __init__(self, robot: TensegrityRobot) -> None:
-        rods, wound = len(robot.design.standing.rods), len(robot.drives)
+        rods = len(robot.design.standing.rods)
         self.rods = rods
         self.rate_scale, fastest = 5.0, 4 * SPEED_BOUND / robot.design.length  # rad/s
         self.parts = (
