@@ -79,7 +79,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
     motion such as roll, climb or cross, a table as in a task file, ``module:Class``, or a Task), render_mode (None,
     rgb_array, human), vary, episodes_per_design; and in place of the task's own: dt [s], settle [s], slope [deg]
     (uphill along the wanted direction; what the robot sees of it is how its parts move), reward (weights to change, see
-    RewardWeights), disturb (ranges of what goes otherwise than designed, see `tensegym.tasks.disturbance`).
+    RewardWeights), disturb (ranges of what goes otherwise than designed, see `tensegym.tasks.disturbance`), engine
+    (pybullet or mujoco).
 
     ``reset(options=...)``: face (index), heading [rad], direction [rad], and design, which puts another robot with as
     many nodes, cables and drives into the same environment.
@@ -106,16 +107,19 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         slope: float | None = None,
         task: str | dict[str, Any] | Task = "roll",
         disturb: dict[str, Any] | None = None,
+        engine: str | None = None,
     ) -> None:
         EzPickle.__init__(
             self, design, observation, control_period, dt, settle, reward, render_mode, vary, episodes_per_design,
-            slope, task, disturb,
+            slope, task, disturb, engine,
         )
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise DesignError(f"render_mode = {render_mode!r} is not one of None, rgb_array, human")
         if type(episodes_per_design) is not int or episodes_per_design < 0:
             raise DesignError(f"episodes_per_design = {episodes_per_design!r} must be a whole number, 0 or more")
-        self.task = as_task(task).changed(dt=dt, settle=settle, slope=slope, reward=reward, disturb=disturb)
+        self.task = as_task(task).changed(
+            dt=dt, settle=settle, slope=slope, reward=reward, disturb=disturb, engine=engine
+        )
         self.dt = self.task.dt
         self.substeps = whole_steps(control_period, self.dt)
         self.render_mode = render_mode
@@ -219,7 +223,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
 
     def _build(self, design: RobotDesign) -> tuple[TensegrityRobot, Observation]:
         gui = self.render_mode == "human"
-        robot = TensegrityRobot(design, dt=self.dt, ground=self.task.ground, gui=gui)
+        robot = self.task.robot(design, gui)
         try:
             return robot, make_observation(self._observation_kind, robot, self._variation)
         except BaseException:

@@ -12,10 +12,11 @@ import pytest
 ROOT = Path(__file__).parents[1]
 SHELVES = (  # each may import from itself and from those before it
     "errors", "arrays", "files", "compiled", "tables", "report", "plotting", "processes",
-    "flexure", "structure", "design", "physics", "engine", "bullet", "robot", "flexible", "control", "tasks", "envs",
-    "urdf", "train", "search", "validation", "tensegym", "cli", "__main__",
+    "flexure", "structure", "design", "physics", "engine", "bullet", "mujoco", "robot", "flexible", "control", "tasks",
+    "envs", "urdf", "train", "search", "validation", "tensegym", "cli", "__main__",
 )  # fmt: skip
-ENGINE = ("pybullet", "pybullet_data", "ctypes", "llvmlite.binding")  # with its C interface and its memory
+ENGINES = {"pybullet": "bullet", "pybullet_data": "bullet", "mujoco": "mujoco"}  # and the one shelf that imports each
+MEMORY = ("ctypes", "llvmlite.binding")  # C interfaces, and what engines hold
 LINKED = ("envs", "train", "urdf")
 
 
@@ -99,21 +100,26 @@ def test_what_a_shelf_loads_is_below_it():
         allowed.add(name)
         names = set(loaded.split())
         assert {shelf(module) for module in names if module.split(".")[0] == "tensegym"} <= allowed, name
-        assert ("pybullet" in names) <= ("bullet" in allowed), name
+        assert all((library in names) <= (home in allowed) for library, home in ENGINES.items()), name
         assert not names & {"torch", "stable_baselines3"} or "train" in allowed, name
         assert "matplotlib" not in names or "train" in allowed, name  # which Stable-Baselines3 brings
 
 
 def test_importing_the_package_brings_nothing_heavy():
-    heavy = {"torch", "stable_baselines3", "matplotlib", "scipy", "pybullet", "numba", "tqdm", "yaml", "tyro"}
+    heavy = {"torch", "stable_baselines3", "matplotlib", "scipy", "numba", "tqdm", "yaml", "tyro", *ENGINES}
     code = "import sys, tensegym; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert heavy & set(done.stdout.split()) == set()
 
 
-def test_only_one_shelf_touches_the_engine_and_its_memory():
-    touching = {m for m, names in IMPORTS.items() if any(f"{n}.".startswith(f"{e}.") for n in names for e in ENGINE)}
-    assert {shelf(module) for module in touching} == {"bullet"}
+def using(library):
+    """Shelves that import a library, or a part of it."""
+    return {shelf(m) for m, names in IMPORTS.items() if any(f"{n}.".startswith(f"{library}.") for n in names)}
+
+
+def test_only_an_engines_shelf_touches_it_and_its_memory():
+    assert all(using(library) <= {home} for library, home in ENGINES.items())
+    assert set().union(*map(using, MEMORY)) <= set(ENGINES.values())
 
 
 HOMES = {
@@ -124,8 +130,7 @@ HOMES = {
 
 @pytest.mark.parametrize("library", HOMES)
 def test_heavy_libraries_have_one_home(library):
-    using = {shelf(module) for module, names in IMPORTS.items() if library in {n.split(".")[0] for n in names}}
-    assert using == HOMES[library]
+    assert using(library) == HOMES[library]
 
 
 def test_modules_are_small():

@@ -10,7 +10,6 @@ from tensegym.control.policy import policy_env
 from tensegym.control.table import make_controller
 from tensegym.report import Report, table
 from tensegym.robot.rendering import draw_in_window
-from tensegym.robot.robot import TensegrityRobot
 from tensegym.tasks.episode import Episode
 from tensegym.tasks.policy_trials import FIRST_SEED, policy_setup
 from tensegym.tasks.rollout import rollout
@@ -40,7 +39,7 @@ class Roll:
 
     def _watch(self) -> Report:
         setup = policy_setup(self.policy)
-        with TensegrityRobot(setup.design, dt=setup.task.dt, ground=setup.task.ground, gui=True) as robot:
+        with setup.robot(gui=True) as robot:
             result = rollout(robot, make_controller(setup.controller), setup.task, FIRST_SEED, watcher=_Clock())
         gait = result.gait
         row = [self.policy, gait.speed_lps, gait.tips, gait.slip_share]

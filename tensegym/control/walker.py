@@ -49,7 +49,7 @@ class Walker:
     def begin(self, robot: TensegrityRobot, seed: int = 0) -> None:
         """As `Controller` has it. Raises DesignError where the table is of another number of faces or drives."""
         if self._table is None:
-            with TensegrityRobot(robot.design, dt=robot.dt) as other:
+            with TensegrityRobot(robot.design, dt=robot.dt, engine=robot.engine) as other:
                 self._table = tip_table(other)
         tabled = 1 + max(tip.from_face for tip in self._table), 1 + max(max(t.pull.drives) for t in self._table)
         here = len(robot.faces.triangles), len(robot.drives)

@@ -9,10 +9,10 @@ import numpy as np
 from tensegym.bullet import BulletWorld
 from tensegym.bullet.camera import Camera
 from tensegym.engine import Scene, World
-from tensegym.errors import DesignError
+from tensegym.errors import DesignError, SimulationError
 from tensegym.tables import show
 
-ENGINES = ("pybullet",)
+ENGINES = ("pybullet", "mujoco")
 _PICTURED: WeakKeyDictionary[World, BulletWorld] = WeakKeyDictionary()
 
 
@@ -22,16 +22,27 @@ def open_world(engine: str, scene: Scene, gui: bool = False, compiled: bool | No
     Args:
         engine: one of ENGINES.
         scene: what stands in it.
-        gui: show it in a window.
+        gui: show it in a window, which is PyBullet's.
         compiled: whether substeps go past Python; by default where they can. Either way gives the same bits.
 
     Raises:
-        DesignError: there is no such engine.
-        SimulationError: it has no window or no compiled substeps, and is asked for them.
+        DesignError: there is no such engine, or it has no window.
+        SimulationError: it is not installed, has no display, or has no compiled substeps and is asked for them.
     """
     if engine not in ENGINES:
         raise DesignError(f"engine = {show(engine)} is not one of {', '.join(ENGINES)}")
-    return BulletWorld(scene, gui, compiled)
+    if engine == "pybullet":
+        return BulletWorld(scene, gui, compiled)
+    if gui:
+        raise DesignError(f"engine {engine!r} has no window: take engine='pybullet', or render to rgb_array instead")
+    try:
+        from tensegym.mujoco.world import MujocoWorld
+    except ModuleNotFoundError as error:
+        if error.name != "mujoco":
+            raise
+        raise SimulationError("engine 'mujoco': MuJoCo is not installed; it comes with the extra mujoco: "
+                              "pip install '.[mujoco]' in tensegym's sources") from error  # fmt: skip
+    return MujocoWorld(scene, compiled)
 
 
 def camera_of(world: World) -> Camera:

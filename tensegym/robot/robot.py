@@ -57,6 +57,7 @@ class TensegrityRobot(RobotState):
         if isinstance(ground, Terrain):
             surface = Ground(ground.heights(reach(model)), ground.cell)
         scene = robot_scene(design, model, dt, surface if ground else None)
+        self.engine = engine
         super().__init__(design, model, surface, open_world(engine, scene, gui, compiled), dt)
         self.reset()
 

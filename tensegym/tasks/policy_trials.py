@@ -20,7 +20,7 @@ FIRST_SEED = 10_000  # evaluation episodes start here; training draws its seeds 
 
 def policy_setup(
     policy: str, *, seconds: float | None = None, dt: float | None = None, observation: str | None = None,
-    task: Task | None = None,
+    task: Task | None = None, engine: str | None = None,
 ) -> Setup:  # fmt: skip
     """What a policy is tried on: as in its training, but never given up.
 
@@ -30,6 +30,7 @@ def policy_setup(
         dt: physics time step [s] in place of the training's, or the given task's.
         observation: in place of the training's.
         task: in place of the training's, with all that is the task's: slope, settling, time step.
+        engine: in place of the training's, or the given task's.
 
     Raises:
         FileNotFoundError: there is no such policy.
@@ -38,10 +39,10 @@ def policy_setup(
     env = policy_env(policy)
     if task is None:
         refuse_code(env.get("task"), f"the policy {policy}")
-        own = {name: env.get(name) for name in ("dt", "settle", "slope", "reward")}
+        own = {name: env.get(name) for name in ("dt", "settle", "slope", "reward", "engine")}
         task = as_task(env.get("task", "roll")).changed(**own, seconds=EPISODE_SECONDS)
     seconds = task.seconds if seconds is None else seconds
-    task = task.changed(dt=dt, seconds=seconds, patience=seconds)
+    task = task.changed(dt=dt, seconds=seconds, patience=seconds, engine=engine)
     design = task.equipped(as_design(env.get("design", "six_rod")))
     varies = env.get("vary") and env.get("episodes_per_design", 1)
     controller: dict[str, Any] = {"kind": "policy", "policy": policy}
@@ -66,7 +67,8 @@ def baseline_setups(setup: Setup, period: float = CONTROL_PERIOD) -> dict[str, S
 
 
 def evaluate(
-    policy: str, *, episodes: int = 100, seconds: float = EPISODE_SECONDS, dt: float | None = None, jobs: int = 0
+    policy: str, *, episodes: int = 100, seconds: float = EPISODE_SECONDS, dt: float | None = None, jobs: int = 0,
+    engine: str | None = None,
 ) -> dict[str, Any]:
     """Figures of a policy over episodes from random faces and headings, as `tensegym evaluate` tabulates them.
 
@@ -76,8 +78,9 @@ def evaluate(
         seconds: length of one.
         dt: physics time step [s] in place of the training's.
         jobs: processes; 0 for one a core.
+        engine: in place of the training's.
 
     Raises: as `policy_setup` and `run_trials`.
     """
-    setup = policy_setup(policy, seconds=seconds, dt=dt)
+    setup = policy_setup(policy, seconds=seconds, dt=dt, engine=engine)
     return summarise(run_trials(setup, range(FIRST_SEED, FIRST_SEED + episodes), jobs=jobs, quiet=True))

@@ -12,9 +12,10 @@ from tensegym.design.design import RobotDesign
 from tensegym.design.parameters import Payload
 from tensegym.errors import DesignError, InputError
 from tensegym.physics.terrain import Terrain, longest_reach
+from tensegym.robot.engines import ENGINES
 from tensegym.robot.gait import GaitMetrics
 from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityRobot
-from tensegym.tables import Checked, bounded, fill, noted, parsed
+from tensegym.tables import Checked, bounded, choice, fill, noted, parsed
 
 from .bound import Bound
 from .disturbance import Disturbance
@@ -45,6 +46,7 @@ class Task(Checked, error=DesignError):
     settle: float = bounded(0, 60, 0.3, "s", "standing still before it")
     patience: float = bounded(0, 3600, 4.0, "s", "given up without a tip in this time; environments never give up")
     dt: float = bounded(LEAST_TIME_STEP, LARGEST_TIME_STEP, 2e-3, "s", "physics time step")
+    engine: str = choice(*ENGINES, what="that steps the robot")
     drop: float = bounded(0, 100, 0.0, "m", "fallen from this height while it settles")
     slope: float = bounded(0, 60, 0.0, "deg", "of the ground, uphill along the wanted direction")
     roughness: float = bounded(0, 0.2, 0.0, "m", "root mean square height of the ground's bumps")
@@ -84,6 +86,10 @@ class Task(Checked, error=DesignError):
         if not self.payload:
             return design
         return design.with_(payload=replace(design.payload or Payload(), mass=self.payload))
+
+    def robot(self, design: RobotDesign, gui: bool = False) -> TensegrityRobot:
+        """A robot on its ground, in its engine. Raises as TensegrityRobot."""
+        return TensegrityRobot(design, dt=self.dt, ground=self.ground, gui=gui, engine=self.engine)
 
     def changed(self: Own, **changes: Any) -> Own:
         """A copy with the fields that are not None replaced; ``reward`` may be a dict of weights to change,

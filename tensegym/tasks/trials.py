@@ -43,9 +43,9 @@ class Setup:
         """The same at another physics time step [s]."""
         return replace(self, task=self.task.changed(dt=dt))
 
-    def robot(self, design: RobotDesign | None = None) -> TensegrityRobot:
-        """A robot on the task's ground."""
-        return TensegrityRobot(design or self.design, dt=self.task.dt, ground=self.task.ground)
+    def robot(self, design: RobotDesign | None = None, gui: bool = False) -> TensegrityRobot:
+        """A robot on the task's ground, in its engine."""
+        return self.task.robot(design or self.design, gui)
 
 
 def check_setup(setup: Setup) -> None:

@@ -26,11 +26,11 @@ class FreeFlight:
 
 
 def free_flight(
-    dt: float = 1e-3, seconds: float = 2.0, seed: int = 0, design: RobotDesign | None = None
+    dt: float = 1e-3, seconds: float = 2.0, seed: int = 0, design: RobotDesign | None = None, engine: str = "pybullet"
 ) -> FreeFlight:
     """Fly without gravity, tumbling, the drives commanded at random every 0.2 s; default: six rods, no spin damping."""
     rng = np.random.default_rng(seed)
-    with TensegrityRobot(design or RobotDesign(spin_damping=0.0), dt=dt, ground=False) as robot:
+    with TensegrityRobot(design or RobotDesign(spin_damping=0.0), dt=dt, ground=False, engine=engine) as robot:
         rest = robot.model.rest_poses[:, :3]
         turning, moving = np.array([1.0, 2.0, -1.5]), np.array([0.3, -0.2, 0.1])
         centre = robot.model.masses @ rest / robot.model.masses.sum()

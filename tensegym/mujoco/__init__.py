@@ -1,0 +1,6 @@
+"""MuJoCo as an engine, and its files. Nothing else imports it, and nothing here but world.py and c_interface.py does.
+
+    mjcf.py            MJCF of bodies and of a scene
+    world.py           MujocoWorld: the protocol of engines (tensegym.engine)
+    c_interface.py     MuJoCo's C interface, and the substeps with no Python in between
+"""
