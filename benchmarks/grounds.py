@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from tensegym.cli.design import open_search
+from tensegym.processes import Pool
 from tensegym.report import table
 from tensegym.search.confirm import FIRST_SEED, TIME_STEP, pick
-from tensegym.search.engine import engine
 from tensegym.search.evaluate import TrialSpec, try_all
 from tensegym.tasks.task import Task
 
@@ -44,7 +44,7 @@ def side_by_side(
     """
     problem, store = open_search(folder)
     finished = store.finished()
-    best = pick(problem, finished, engine("local", 1), episodes, candidates, skip=episodes)
+    best = pick(problem, finished, Pool(1), episodes, candidates, skip=episodes)
     start, found = (problem.space.apply(values) for values in (problem.space.start, finished[best][0]))
     changes: list[dict[str, Any]] = [{field: v, "dt": TIME_STEP, "patience": problem.task.seconds} for v in values]
     plain = {"design": {}, "controller": POLICY}

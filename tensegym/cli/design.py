@@ -12,12 +12,13 @@ from typing import Any
 from tensegym.errors import InputError
 from tensegym.files import lock_folder, write_text
 from tensegym.report import Report, table
-from tensegym.search.engine import Engine, check_engine, engine
+from tensegym.robot.engines import check_engine
 from tensegym.search.evaluate import TrialResult
 from tensegym.search.loop import run_search
 from tensegym.search.problem import Problem, load_problem, problem_from
 from tensegym.search.store import Finished, Store, masked
 from tensegym.search.winner import best_number
+from tensegym.search.workers import Workers, check_workers, open_workers
 
 from .options import Count, Jobs, Seed
 
@@ -33,7 +34,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
 class _Search:
     jobs: Jobs = 1
     """Processes, or workers of a Ray cluster started here."""
-    engine: str = "local"
+    workers: str = "local"
     """Where trials run: local (processes of this machine), ray."""
     address: str | None = None
     """Address of a running Ray cluster."""
@@ -41,9 +42,9 @@ class _Search:
     """Database URL; default: study.db in the folder."""
 
     def _check(self) -> None:
-        check_engine(self.engine, self.address)
+        check_workers(self.workers, self.address)
 
-    def _go(self, problem: Problem, store: Store, pool: Engine, budget: int, out: Path) -> Report:
+    def _go(self, problem: Problem, store: Store, pool: Workers, budget: int, out: Path) -> Report:
         from tqdm import tqdm
 
         store.note("budget", budget)
@@ -74,13 +75,16 @@ class Run(_Search):
     """Seed of the search in place of the task file's."""
     sampler: str | None = None
     """Sampler in place of the task file's: cmaes, tpe, nsga2, random."""
+    engine: str | None = None
+    """Physics engine in place of the task file's: pybullet, or mujoco (extra mujoco)."""
     out: Path = Path("design")
     """Folder for the study; must not hold another one."""
 
     def run(self) -> Report:
         self._check()
-        problem = load_problem(self.task).with_settings(seed=self.seed, sampler=self.sampler)
-        with engine(self.engine, self.jobs, self.address) as pool, lock_folder(self.out):
+        problem = load_problem(self.task).with_settings(self.engine, seed=self.seed, sampler=self.sampler)
+        check_engine(problem.task.engine)
+        with open_workers(self.workers, self.jobs, self.address) as pool, lock_folder(self.out):
             store = Store(self.out, problem, self.storage)
             write_text(self.out / "storage.txt", masked(self.storage or ""))
             return self._go(problem, store, pool, self.budget, self.out)
@@ -97,8 +101,9 @@ class Resume(_Search):
 
     def run(self) -> Report:
         self._check()
-        open_search(self.folder, self.storage)  # where there is none, nothing is started
-        with engine(self.engine, self.jobs, self.address) as pool, lock_folder(self.folder):
+        found, _ = open_search(self.folder, self.storage)  # where there is none, nothing is started
+        check_engine(found.task.engine)
+        with open_workers(self.workers, self.jobs, self.address) as pool, lock_folder(self.folder):
             problem, store = open_search(self.folder, self.storage)
             return self._go(problem, store, pool, self.budget or store.noted("budget"), self.folder)
 

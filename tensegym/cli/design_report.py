@@ -9,9 +9,9 @@ from typing import Annotated
 from tensegym.errors import InputError
 from tensegym.report import Report, table
 from tensegym.search.confirm import confirm
-from tensegym.search.engine import engine
 from tensegym.search.report import write_report
 from tensegym.search.winner import ranked
+from tensegym.search.workers import open_workers
 
 from .design import open_search
 from .options import MOST, Jobs, Within
@@ -32,7 +32,7 @@ class DesignReport:
     """Folders of other searches to compare with, such as a random one."""
     jobs: Jobs = 1
     """Processes."""
-    engine: str = "local"
+    workers: str = "local"
     """Where episodes run: local (processes of this machine), ray."""
     address: str | None = None
     """Address of a running Ray cluster."""
@@ -48,7 +48,7 @@ class DesignReport:
         finished = store.finished()
         if not ranked(problem, finished):
             raise InputError(f"{self.folder} has no finished trial to report; resume it first")
-        with engine(self.engine, self.jobs, self.address) as pool:
+        with open_workers(self.workers, self.jobs, self.address) as pool:
             confirmed = confirm(problem, finished, pool, self.episodes)
         data = write_report(self.folder, problem, store, confirmed, others)
         shown = {"goal_metric_mean": f"{problem.task.goal.metric}, mean"} | _SHOWN

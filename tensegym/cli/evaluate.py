@@ -43,6 +43,8 @@ class Evaluate:
     """Length of an episode [s]; default: 20, or the given task's own."""
     dt: Annotated[float, Within(LEAST_TIME_STEP, LARGEST_TIME_STEP, "s")] | None = None
     """Physics time step [s]; default: the environment's."""
+    engine: str | None = None
+    """Physics engine: pybullet, or mujoco (extra mujoco); default: the task's."""
     baselines: bool = True
     """Also judge random commands and the open-loop walker on the same episodes."""
     half_step: bool = True
@@ -57,7 +59,7 @@ class Evaluate:
     def run(self) -> Report:
         setup = policy_setup(
             self.policy, seconds=self.seconds, dt=self.dt, observation=self.observation,
-            task=None if self.task is None else load_task(self.task),
+            task=None if self.task is None else load_task(self.task), engine=self.engine,
         )  # fmt: skip
         if self.disturb is not None:
             with in_file(str(self.disturb)):
@@ -77,7 +79,8 @@ class Evaluate:
         seeds = range(FIRST_SEED, FIRST_SEED + self.episodes)
         results = {name: run_trials(each, seeds, jobs=self.jobs or 0) for name, each in setups.items()}
         summaries = {name: summarise(each) for name, each in results.items()}
-        data = {"policy": self.policy, "dt": dt, "seconds": setup.task.seconds, "summaries": summaries,
+        data = {"policy": self.policy, "engine": setup.task.engine, "dt": dt, "seconds": setup.task.seconds,
+                "summaries": summaries,
                 "episodes": {name: [result.row() for result in each] for name, each in results.items()}}  # fmt: skip
         write_text(self.out / "metrics.json", to_json({"version": VERSION, **data}, indent=1) + "\n")
         self._draw(setup, [result.gait.speed_lps for result in results[self.policy]])

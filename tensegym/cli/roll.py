@@ -28,6 +28,8 @@ class Roll:
     """Folder for metrics.json, gait.png and roll.mp4."""
     episodes: Count = 10
     """Episodes in the table."""
+    engine: str | None = None
+    """Physics engine: pybullet, or mujoco (extra mujoco); default: the task's."""
     window: bool = False
     """Instead: watch one episode in PyBullet's window, in real time; needs a display, writes nothing."""
 
@@ -35,10 +37,10 @@ class Roll:
         if self.window:
             return self._watch()
         plain = "design" not in policy_env(self.policy)  # another robot's walker takes minutes to tabulate
-        return Evaluate(self.policy, self.out, self.episodes, baselines=plain).run()
+        return Evaluate(self.policy, self.out, self.episodes, engine=self.engine, baselines=plain).run()
 
     def _watch(self) -> Report:
-        setup = policy_setup(self.policy)
+        setup = policy_setup(self.policy, engine=self.engine)
         with setup.robot(gui=True) as robot:
             result = rollout(robot, make_controller(setup.controller), setup.task, FIRST_SEED, watcher=_Clock())
         gait = result.gait

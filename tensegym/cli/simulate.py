@@ -42,6 +42,8 @@ class Simulate:
     """--no-ground: free flight without gravity."""
     dt: Annotated[float, Within(1e-6, LARGEST_TIME_STEP, "s")] = 1e-3
     """Physics time step [s]."""
+    engine: str = "pybullet"
+    """Physics engine: pybullet, or mujoco (extra mujoco)."""
     sample: Annotated[float, Within(1e-6, 10.0, "s")] = 0.01
     """Time between rows of the output [s]."""
 
@@ -55,7 +57,7 @@ class Simulate:
         every = round(self.sample / self.dt)
         if every < 1 or not math.isclose(every * self.dt, self.sample, rel_tol=1e-6):
             raise InputError(f"sample = {self.sample:g} s must be a whole number of steps of dt = {self.dt:g} s")
-        with TensegrityRobot(design, dt=self.dt, ground=self.ground) as robot:
+        with TensegrityRobot(design, dt=self.dt, ground=self.ground, engine=self.engine) as robot:
             start_at(robot, self.start or robot.faces.names()[0], self.heading)
             commands = Playback(times, angles, self.dt)
             try:

@@ -45,6 +45,8 @@ class Step:
     """Folder to write in."""
     dt: Annotated[float, Within(LEAST_TIME_STEP, LARGEST_TIME_STEP, "s")] = 2e-3
     """Physics time step [s]."""
+    engine: str = "pybullet"
+    """Physics engine: pybullet, or mujoco (extra mujoco)."""
 
     def run(self) -> Report:
         design = as_design(self.design)
@@ -56,10 +58,10 @@ class Step:
         if self.out.exists() and not self.out.is_dir():
             raise InputError(f"--out {self.out} is a file; give a folder")
         require_matplotlib()
-        verdict = standing_verdict(design)
+        verdict = standing_verdict(design, self.engine)
         if all(face.fell for face in verdict.faces):
             raise SimulationError(f"{design.name} {verdict.text}".replace("\n", "; "))
-        with TensegrityRobot(design, dt=self.dt) as robot:
+        with TensegrityRobot(design, dt=self.dt, engine=self.engine) as robot:
             count = len(robot.drives)
             if not all(1 <= d <= count for d in self.drives) or len(set(self.drives)) < len(self.drives):
                 raise InputError(f"drives = {self.drives} must be different numbers from 1 to {count}")

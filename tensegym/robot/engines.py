@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -12,7 +13,8 @@ from tensegym.engine import Scene, World
 from tensegym.errors import DesignError, SimulationError
 from tensegym.tables import show
 
-ENGINES = ("pybullet", "mujoco")
+TITLES = {"pybullet": "PyBullet", "mujoco": "MuJoCo"}
+ENGINES = tuple(TITLES)
 _PICTURED: WeakKeyDictionary[World, BulletWorld] = WeakKeyDictionary()
 
 
@@ -29,20 +31,30 @@ def open_world(engine: str, scene: Scene, gui: bool = False, compiled: bool | No
         DesignError: there is no such engine, or it has no window.
         SimulationError: it is not installed, has no display, or has no compiled substeps and is asked for them.
     """
-    if engine not in ENGINES:
-        raise DesignError(f"engine = {show(engine)} is not one of {', '.join(ENGINES)}")
+    check_engine(engine)
     if engine == "pybullet":
         return BulletWorld(scene, gui, compiled)
     if gui:
         raise DesignError(f"engine {engine!r} has no window: take engine='pybullet', or render to rgb_array instead")
-    try:
-        from tensegym.mujoco.world import MujocoWorld
-    except ModuleNotFoundError as error:
-        if error.name != "mujoco":
-            raise
-        raise SimulationError("engine 'mujoco': MuJoCo is not installed; it comes with the extra mujoco: "
-                              "pip install '.[mujoco]' in tensegym's sources") from error  # fmt: skip
+    from tensegym.mujoco.world import MujocoWorld
+
     return MujocoWorld(scene, compiled)
+
+
+def check_engine(engine: str) -> None:
+    """Raises DesignError for an engine there is not, SimulationError for one that is not installed."""
+    if engine not in ENGINES:
+        raise DesignError(f"engine = {show(engine)} is not one of {', '.join(ENGINES)}")
+    if engine != "pybullet" and not _installed(engine):
+        raise SimulationError(f"engine {engine!r} is not installed; it comes with the extra {engine}: "
+                              f"pip install '.[{engine}]' in tensegym's sources")  # fmt: skip
+
+
+def _installed(library: str) -> bool:
+    try:
+        return find_spec(library) is not None
+    except ValueError:  # of a module that is kept from being imported
+        return False
 
 
 def camera_of(world: World) -> Camera:

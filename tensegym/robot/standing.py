@@ -117,18 +117,18 @@ def has_fallen(robot: TensegrityRobot) -> bool:
     return not hull_volume(robot.node_positions_in_world()) >= FALLEN * hull_volume(robot.design.standing.nodes)
 
 
-def standing_verdict(design: RobotDesign) -> Verdict:
+def standing_verdict(design: RobotDesign, engine: str = "pybullet") -> Verdict:
     """Set a robot down on every face it could rest on, then look for the least pretension that holds it on all.
 
     Raises StructureError where the nodes span no volume.
     """
-    with _robot(design) as robot:
+    with _robot(design, engine) as robot:
         faces = {face: _settle(robot, face) for face in resting_faces(robot)}
     verdict = Verdict(design.shape, list(faces.values()), None, design.elastic_cable.pretension, design.length)
     worst_first = sorted(faces, key=lambda face: faces[face] is not verdict.worst)
     if design.elastic_cable.natural_length is not None or design.gravity == 0:
         return verdict
-    return verdict._replace(least_pretension=_least_pretension(design, worst_first, not verdict.worst.fell))
+    return verdict._replace(least_pretension=_least_pretension(design, engine, worst_first, not verdict.worst.fell))
 
 
 def resting_faces(robot: TensegrityRobot) -> Iterable[int]:
@@ -143,13 +143,13 @@ def resting_faces(robot: TensegrityRobot) -> Iterable[int]:
             yield face
 
 
-def _robot(design: RobotDesign) -> TensegrityRobot:
+def _robot(design: RobotDesign, engine: str) -> TensegrityRobot:
     for dt in TIME_STEPS[:-1]:
         try:
-            return TensegrityRobot(design, dt=dt)
+            return TensegrityRobot(design, dt=dt, engine=engine)
         except DesignError:
             continue
-    return TensegrityRobot(design, dt=TIME_STEPS[-1])
+    return TensegrityRobot(design, dt=TIME_STEPS[-1], engine=engine)
 
 
 def _settle(robot: TensegrityRobot, face: int) -> FaceVerdict:
@@ -171,12 +171,12 @@ def _settle(robot: TensegrityRobot, face: int) -> FaceVerdict:
     return FaceVerdict(name, sag, hull_volume(nodes) / hull_volume(rest))
 
 
-def _least_pretension(design: RobotDesign, faces: list[int], stands: bool) -> float | None:
+def _least_pretension(design: RobotDesign, engine: str, faces: list[int], stands: bool) -> float | None:
     """Halve or double the pretension until the robot falls or stands, then close in on where it changes [N]."""
     low = high = present = design.elastic_cable.pretension
     while stands and low > WIDEST * present:
         low, high = low / 2, low
-        stands = _stands(design, low, faces)
+        stands = _stands(design, engine, low, faces)
         if stands:
             high = low
     if stands:
@@ -187,19 +187,19 @@ def _least_pretension(design: RobotDesign, faces: list[int], stands: bool) -> fl
         if high >= most:
             return None
         low, high = high, min(2 * high, most)
-        if not _stands(design, high, faces):
+        if not _stands(design, engine, high, faces):
             low = high
     while high > CLOSE * low:
         middle = float(np.sqrt(low * high))
-        low, high = (low, middle) if _stands(design, middle, faces) else (middle, high)
+        low, high = (low, middle) if _stands(design, engine, middle, faces) else (middle, high)
     return high
 
 
-def _stands(design: RobotDesign, pretension: float, faces: list[int]) -> bool:
+def _stands(design: RobotDesign, engine: str, pretension: float, faces: list[int]) -> bool:
     """Whether the robot stands on these faces at a pretension [N]; not where no robot can be made with it."""
     try:
         other = design.with_(elastic_cable=replace(design.elastic_cable, pretension=pretension))
-        with _robot(other) as robot:
+        with _robot(other, engine) as robot:
             return not any(_settle(robot, face).fell for face in faces)
     except (DesignError, StructureError):
         return False

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from .engine import Engine
 from .evaluate import Episode, TrialSpec, try_all
 from .problem import Problem
 from .space import Tables
 from .store import Finished
 from .winner import ranked
+from .workers import Workers
 
 FIRST_SEED = 2**32  # a search draws its seeds below this
 CHUNK = 5  # episodes that go to a worker at a time
@@ -28,30 +28,30 @@ class Confirmed:
     rows: dict[tuple[str, float], list[Episode]]
 
 
-def confirm(problem: Problem, finished: Finished, engine: Engine, episodes: int, candidates: int = 5) -> Confirmed:
+def confirm(problem: Problem, finished: Finished, workers: Workers, episodes: int, candidates: int = 5) -> Confirmed:
     """Pick the winner, then try it and the start over ``episodes`` others.
 
     Every episode is tried as long as the task says, however hopeless.
     """
-    winner = pick(problem, finished, engine, max(2, episodes // 2), candidates, skip=episodes)
+    winner = pick(problem, finished, workers, max(2, episodes // 2), candidates, skip=episodes)
     both = {"start": problem.space.start, "found": finished[winner][0]}
     wanted = {(who, dt): problem.space.apply(v) for who, v in both.items() for dt in (TIME_STEP, TIME_STEP / 2)}
-    return Confirmed(winner, over_starts(problem, wanted, episodes, 0, engine))
+    return Confirmed(winner, over_starts(problem, wanted, episodes, 0, workers))
 
 
 def pick(
-    problem: Problem, finished: Finished, engine: Engine, episodes: int, candidates: int = 5, skip: int = 0
+    problem: Problem, finished: Finished, workers: Workers, episodes: int, candidates: int = 5, skip: int = 0
 ) -> int:
     """Number of the trial with the best mean over new starts, among the best ``candidates`` as searched."""
     tables = {n: problem.space.apply(finished[n][0]) for n in ranked(problem, finished)[:candidates]}
     sign = 1 if problem.settings.objectives[0].maximise else -1
     metric = problem.settings.objectives[0].metric
-    rows = over_starts(problem, {(n, TIME_STEP): t for n, t in tables.items()}, episodes, skip, engine)
+    rows = over_starts(problem, {(n, TIME_STEP): t for n, t in tables.items()}, episodes, skip, workers)
     return max(tables, key=lambda n: sign * float(np.mean([row[metric] for row in rows[n, TIME_STEP]])))
 
 
 def over_starts(
-    problem: Problem, wanted: Mapping[Any, Tables], episodes: int, skip: int, engine: Engine
+    problem: Problem, wanted: Mapping[Any, Tables], episodes: int, skip: int, workers: Workers
 ) -> dict[Any, list[Episode]]:
     """Episodes of each of ``wanted``, keys ending in the time step, from seeds ``skip`` after the first on."""
     seeds = [FIRST_SEED + skip + i for i in range(episodes)]
@@ -62,7 +62,7 @@ def over_starts(
               problem.task.changed(dt=key[-1], patience=problem.task.seconds), chunk)
         for i, (key, chunk) in enumerate(keys)
     ]  # fmt: skip
-    results = {tried.number: tried.episodes for tried in engine.map(try_all, trials)}
+    results = {tried.number: tried.episodes for tried in workers.map(try_all, trials)}
     rows: dict[Any, list[Episode]] = {key: [] for key in wanted}
     for i, (key, _) in enumerate(keys):
         rows[key] += results[i]

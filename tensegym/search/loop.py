@@ -10,22 +10,22 @@ import numpy as np
 from tensegym.errors import InputError
 
 from .asker import Asker
-from .engine import Engine
 from .evaluate import TrialResult, TrialSpec, run_trial
 from .problem import Problem
 from .space import Value
 from .store import Store
+from .workers import Workers
 
 BARS_FROM = 4  # batches whose losses set the bar of the next one
 
 
 def run_search(
-    problem: Problem, store: Store, engine: Engine, budget: int,
+    problem: Problem, store: Store, workers: Workers, budget: int,
     progress: Callable[[TrialResult], None] | None = None, evaluate: Callable[[TrialSpec], TrialResult] = run_trial,
 ) -> None:
     """Go on until ``budget`` trials are stored. Trials that are stored already are not run again.
 
-    The trials and their values depend on the problem alone: not on the engine, the number of workers, or on how often
+    The trials and their values depend on the problem alone: not on where they run, on how many workers, or how often
     the search was killed in between. Raises InputError where the stored trials are not those this problem asks for.
     """
     asker, finished = Asker(problem), store.finished()
@@ -42,7 +42,7 @@ def run_search(
             if not _same(values_of[n], finished[n][0]):
                 raise InputError(f"stored trial {n} is not the one this search asks for: made with other versions?")
         due = [trial for n, trial in trials.items() if n not in finished and n < budget]
-        for outcome in engine.map(evaluate, due):
+        for outcome in workers.map(evaluate, due):
             store.add(asker, values_of[outcome.number], outcome)
             finished[outcome.number] = (values_of[outcome.number], outcome)
             if progress:

@@ -97,12 +97,15 @@ class Problem:
     settings: Settings
     text: str
 
-    def with_settings(self, **changes: Any) -> Problem:
-        """The same search with some settings replaced; None leaves one as it is."""
+    def with_settings(self, engine: str | None = None, **changes: Any) -> Problem:
+        """The same search with the task's engine and some settings replaced; None leaves one as it is."""
         changes = {k: v for k, v in changes.items() if v is not None}
-        if not changes:
+        if engine is None and not changes:
             return self
         data = parse_toml(self.text, "the task file", InputError)
+        if engine is not None:
+            task = data["task"]
+            data["task"] = ({"motion": task} if isinstance(task, str) else task) | {"engine": engine}
         data["search"] = data.get("search", {}) | changes
         return problem_from(tomli_w.dumps(data), "the task file with the options given")
 

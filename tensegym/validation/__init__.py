@@ -10,7 +10,7 @@ from .check import Check
 
 __all__ = ["TOPICS", "Check"]
 
-TOPICS: dict[str, Callable[[], Iterator[Check]]] = {
+TOPICS: dict[str, Callable[[str], Iterator[Check]]] = {  # of an engine
     "statics": statics.rows,
     "breathing": breathing.rows,
     "modes": modes.rows,

@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from tensegym.design.design import RobotDesign
 from tensegym.design.parameters import ElasticCable, Rod
+from tensegym.robot.engines import TITLES
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.structure.modes import breathing_frequency
 from tensegym.structure.structure import Structure, six_rod
@@ -30,9 +31,11 @@ def equal_rods(damping: float) -> RobotDesign:
     )
 
 
-def breathe(damping: float, dt: float = 1e-3, periods: int = 30) -> tuple[float, float]:
-    """Breathing mode in free flight in PyBullet: frequency [Hz] from zero crossings, damping ratio from peaks."""
-    with TensegrityRobot(equal_rods(damping), dt=dt, ground=False) as robot:
+def breathe(
+    damping: float, dt: float = 1e-3, periods: int = 30, engine: str = "pybullet"
+) -> tuple[float, float]:
+    """Breathing mode in free flight: frequency [Hz] from zero crossings, damping ratio from peaks."""
+    with TensegrityRobot(equal_rods(damping), dt=dt, ground=False, engine=engine) as robot:
         poses = robot.model.rest_poses
         outward = poses[:, :3] - poses[:, :3].mean(axis=0)
         velocities = np.zeros((6, 6))
@@ -54,11 +57,11 @@ def breathe(damping: float, dt: float = 1e-3, periods: int = 30) -> tuple[float,
     return float(frequency), float(decrement / (2 * np.pi))
 
 
-def rows() -> Iterator[Check]:
-    """M1 and M3 in PyBullet at 1 ms."""
+def rows(engine: str = "pybullet") -> Iterator[Check]:
+    """M1 and M3 in an engine at 1 ms."""
     design = equal_rods(0.0)
     expected = breathing_frequency(10.0, design.passive_rod.mass, design.standing.lengths([[0, 4]])[0])
-    frequency, _ = breathe(0.0)
-    yield Check("M1", "breathing mode in PyBullet, 1 ms: Hz", expected, frequency, 5e-4 * expected)
-    _, ratio = breathe(5.0)
+    frequency, _ = breathe(0.0, engine=engine)
+    yield Check("M1", f"breathing mode in {TITLES[engine]}, 1 ms: Hz", expected, frequency, 5e-4 * expected)
+    _, ratio = breathe(5.0, engine=engine)
     yield Check("M3", "its damping ratio with cable dampers of 5 N s/m", 0.0, ratio, 1e-4)

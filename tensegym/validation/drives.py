@@ -23,8 +23,8 @@ def drive_speed(tension: float, drive: Drive | None = None) -> float:
     return state[drive_kernel.PULLED] / 1e-3
 
 
-def rows() -> Iterator[Check]:
-    """Speeds and tensions of the default drive at full command."""
+def rows(engine: str = "pybullet") -> Iterator[Check]:
+    """Speeds and tensions of the default drive at full command; no engine takes part."""
     yield Check("drive", "unloaded speed, m/s", 0.197, drive_speed(0.0), 0.002)
     yield Check("drive", "speed at the nominal 41 N, m/s", 0.121, drive_speed(41.0), 0.002)
     yield Check("drive", "tension at the nominal 0.121 m/s, N", 41.0,

@@ -53,10 +53,10 @@ def free_flight(
     return FreeFlight(float(linear), float(angular), float(least), float(slack_tension), slack_seen)
 
 
-def rows() -> Iterator[Check]:
+def rows(engine: str = "pybullet") -> Iterator[Check]:
     """I1: momentum and one-sided cables in free flight, of rigid and of flexible rods."""
     for rods, design in (("", RobotDesign()), (", flexible rods", flexible_design())):
-        seen = free_flight(design=design.with_(spin_damping=0.0))
+        seen = free_flight(design=design.with_(spin_damping=0.0), engine=engine)
         yield Check("I1", f"linear momentum, relative drift in 2 s{rods}", 0.0, seen.linear_drift, 1e-6)
         yield Check("I1", f"angular momentum, relative drift in 2 s{rods}", 0.0, seen.angular_drift, 1e-6)
         yield Check("I1", f"least tension, N, where negative{rods}", 0.0, min(seen.least_tension, 0.0), 0)

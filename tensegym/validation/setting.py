@@ -9,9 +9,10 @@ from importlib.metadata import PackageNotFoundError, version
 from tensegym.bullet import c_interface
 
 
-def setting() -> str:
+def setting(engine: str = "pybullet") -> str:
     """One line on this process, as "Python 3.13.0, pybullet-arm64 3.2.8, compiled substeps"."""
-    engine = "PyBullet"
+    if engine != "pybullet":
+        return f"Python {platform.python_version()}, {engine} {version(engine)}"
     for name in c_interface.KNOWN_VERSIONS:
         with suppress(PackageNotFoundError):
             engine = f"{name} {version(name)}"

@@ -14,8 +14,8 @@ from tensegym.structure.structure import Structure, paper, six_rod
 from .check import Check, furthest
 
 
-def rows() -> Iterator[Check]:
-    """S1 to S7: the six-rod self-stress."""
+def rows(engine: str = "pybullet") -> Iterator[Check]:
+    """S1 to S7: the six-rod self-stress; no engine takes part."""
     unit = paper().nodes / 0.7016
     found = form_find(paper().with_nodes(unit), 10.0)
     spacing = np.linalg.norm(found.nodes[found.rods].mean(axis=1)[1] - found.nodes[found.rods].mean(axis=1)[0])

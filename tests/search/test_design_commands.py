@@ -85,7 +85,8 @@ def test_a_storage_that_does_not_answer_is_refused(cli, tiny_file, tmp_path, url
         (["run", "--task", "nowhere.toml"], ["no task file nowhere.toml", "carry"]),
         (["run", "--budget", "0"], ["budget = 0"]),
         (["run", "--jobs", "0"], ["jobs = 0"]),
-        (["run", "--engine", "magic"], ["engine = 'magic'", "local, ray"]),
+        (["run", "--workers", "magic"], ["workers = 'magic'", "local, ray"]),
+        (["run", "--engine", "ray"], ["engine = 'ray' is not one of pybullet, mujoco"]),
         (["run", "--address", "127.0.0.1:1"], ["no Ray cluster answers", "127.0.0.1:1"]),
         (["status", "--folder", "nothing"], ["no search in nothing"]),
         (["resume", "--folder", "nothing"], ["no search in nothing"]),
@@ -102,5 +103,5 @@ def test_bad_input(cli, tmp_path, monkeypatch, argv, words):
 def test_a_missing_library_is_named_with_the_extra_that_brings_it(cli, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setitem(sys.modules, "ray", None)
-    assert_refused(cli("design", "run", "--engine", "ray"), "ray is not installed", "pip install '.[cluster]'")
+    assert_refused(cli("design", "run", "--workers", "ray"), "ray is not installed", "pip install '.[cluster]'")
     assert not list(tmp_path.iterdir())

@@ -1,4 +1,4 @@
-"""The Ray engine on a local cluster of two workers; needs the extra `cluster`."""
+"""Ray's workers on a local cluster of two workers; needs the extra `cluster`."""
 
 import importlib.util
 import os
@@ -10,9 +10,9 @@ import pytest
 from workers import killed_once
 
 from tensegym.processes import Pool
-from tensegym.search.engine import engine
 from tensegym.search.loop import run_search
 from tensegym.search.store import Store
+from tensegym.search.workers import open_workers
 
 if importlib.util.find_spec("ray") is None:
     pytest.skip("needs ray", allow_module_level=True)
@@ -34,7 +34,7 @@ def test_ray_finds_what_local_processes_find_and_retries_a_killed_worker(tiny, t
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent), prepend=os.pathsep)
     problem = tiny()
     kept = {}
-    with engine("ray", 2) as ray:
+    with open_workers("ray", 2) as ray:
         assert listening() <= {"127.0.0.1"}
         for name, pool in (("ray", ray), ("local", Pool(1))):
             (tmp_path / name).mkdir()
@@ -58,7 +58,7 @@ ray.init(address=sys.argv[1], logging_level="error")
 
 
 def test_ray_started_here_takes_no_one_without_its_token():
-    with engine("ray", 1) as started:
+    with open_workers("ray", 1) as started:
         address = started._ray.get_runtime_context().gcs_address
         done = subprocess.run([sys.executable, "-c", STRANGER, address], capture_output=True, text=True, timeout=120)
     assert done.returncode != 0

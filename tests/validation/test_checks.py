@@ -5,8 +5,8 @@ from functools import partial
 import numpy as np
 import pytest
 
+from tensegym.engine import world
 from tensegym.physics import drives as drive_kernel
-from tensegym.physics import substep as kernel
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.validation import TOPICS, Check, breathing, drives, flight, geometry, statics
 
@@ -15,7 +15,12 @@ WANTED = {*(f"S{n}" for n in range(1, 8)), "M1", "M2", "M3", "G1", "G2", "G3", "
 
 @pytest.fixture(scope="module")
 def rows():
-    return {topic: list(rows_of()) for topic, rows_of in TOPICS.items()}
+    return {topic: list(rows_of("pybullet")) for topic, rows_of in TOPICS.items()}
+
+
+@pytest.mark.parametrize("topic", [breathing, flight], ids=["breathing", "flight"])
+def test_the_rows_of_an_engine_pass_in_mujoco_too(topic):
+    assert [row for row in topic.rows("mujoco") if not row.passed] == []
 
 
 @pytest.mark.parametrize("topic", TOPICS)
@@ -97,12 +102,12 @@ def test_a_weaker_drive_is_caught(monkeypatch):
 
 def test_a_force_without_its_reaction_is_caught(monkeypatch):
     """Leave a thousandth of one rod's force out: momentum is no longer kept."""
-    right = kernel.substep
+    right = world.substep
 
     def lame(*args):
         right(*args)
         args[3].wrenches[0, :3] *= 0.999
 
-    monkeypatch.setattr(kernel, "substep", lame)
+    monkeypatch.setattr(world, "substep", lame)
     monkeypatch.setattr(flight, "TensegrityRobot", partial(TensegrityRobot, compiled=False))
     assert failing(flight) == {"I1"}

@@ -1,4 +1,4 @@
-"""Engines: where evaluations run. Each is a map that yields outcomes as they come, and leaves their order to others."""
+"""Workers: where evaluations run. Each is a map that yields outcomes as they come, and leaves their order to others."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from tensegym.errors import InputError
 from tensegym.processes import RETRIES, Pool
 
 
-class Engine(AbstractContextManager["Engine"], Protocol):
+class Workers(AbstractContextManager["Workers"], Protocol):
     """``map`` yields each item's result once, in any order; an item whose worker was lost is tried again."""
 
     def map(self, function: Callable[[Any], Any], items: Sequence[Any]) -> Iterator[Any]: ...
 
 
-class RayEngine:
+class RayWorkers:
     """A Ray cluster at ``address``, or one started here with ``jobs`` workers, for this machine and user alone."""
 
     def __init__(self, jobs: int, address: str | None) -> None:
@@ -38,7 +38,7 @@ class RayEngine:
         except (ConnectionError, RuntimeError, ValueError) as error:
             raise InputError(f"no Ray cluster answers at {address!r}: {str(error).splitlines()[0]}") from error
 
-    def __enter__(self) -> RayEngine:
+    def __enter__(self) -> RayWorkers:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -60,19 +60,19 @@ def _keep_to_this_machine() -> None:
     if "RAY_AUTH_MODE" in os.environ:  # set here before, or by a user who knows Ray
         return
     if "ray" in sys.modules and not sys.modules["ray"].is_initialized():
-        raise InputError("ray was imported before its engine was made, and would listen on the network: "
-                         "make the engine first, or set RAY_AUTH_MODE before the import")  # fmt: skip
+        raise InputError("ray was imported before its workers were made, and would listen on the network: "
+                         "make the workers first, or set RAY_AUTH_MODE before the import")  # fmt: skip
     os.environ |= {"RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0", "RAY_AUTH_MODE": "token",
                    "RAY_AUTH_TOKEN": secrets.token_hex(32)}  # fmt: skip
 
 
-def check_engine(name: str, address: str | None = None) -> None:
-    """Raises InputError for an engine there is not, or an address of host and port at which nothing listens.
+def check_workers(name: str, address: str | None = None) -> None:
+    """Raises InputError for workers there are not, or an address of host and port at which nothing listens.
 
-    Raises ModuleNotFoundError where the engine's library is missing. Ray itself takes minutes to give an address up.
+    Raises ModuleNotFoundError where their library is missing. Ray itself takes minutes to give an address up.
     """
     if name not in ("local", "joblib", "ray"):
-        raise InputError(f"engine = {name!r} is not one of local, ray")
+        raise InputError(f"workers = {name!r} is not one of local, ray")
     if name == "ray" and importlib.util.find_spec(name) is None:
         raise ModuleNotFoundError("No module named 'ray'", name=name)
     place = re.fullmatch(r"(?:ray://)?([^:/]+):(\d{1,5})", address or "")
@@ -84,10 +84,10 @@ def check_engine(name: str, address: str | None = None) -> None:
         raise InputError(f"no Ray cluster answers at address = {address!r}: {error}") from error
 
 
-def engine(name: str, jobs: int, address: str | None = None) -> Engine:
+def open_workers(name: str, jobs: int, address: str | None = None) -> Workers:
     """By name: ray, or local (joblib, as it was called once) for processes of this machine.
 
-    Raises as `check_engine`, or InputError where no cluster answers.
+    Raises as `check_workers`, or InputError where no cluster answers.
     """
-    check_engine(name, address)
-    return RayEngine(jobs, address) if name == "ray" else Pool(jobs)
+    check_workers(name, address)
+    return RayWorkers(jobs, address) if name == "ray" else Pool(jobs)
