@@ -9,6 +9,9 @@
     tips = ""                 # a file of `tensegym step --all-faces`; default: the default design's; "own": made now
     depth = 1.0               # and the fields of tensegym.control.walker.WalkerSettings
 
+    kind = "planner"          # A* over the table of tips; as the walker, and
+    reach = 0.4               # the field of tensegym.control.planner.PlannerSettings
+
     kind = "policy"           # what PPO learned, alone
     policy = "rolling"
     observation = "onboard"   # default: as it was trained
@@ -30,6 +33,7 @@ from tensegym.tables import as_text, bounded, fill, noted, show
 
 from .controller import Controller
 from .cpg import Cpg, CpgController
+from .planner import Planner, PlannerSettings
 from .policy import PolicyController, policy_env, policy_folder, shipped
 from .policy_file import read_policy
 from .random_commands import RandomCommands
@@ -53,6 +57,9 @@ def make_controller(table: Mapping[str, Any]) -> Controller:
     if kind == "walker":
         tips = table.get("tips", "")
         return Walker(None if tips == OWN else _tips(tips), parameters, table.get("period", 0.1))
+    if kind == "planner":
+        return Planner(None if (tips := table.get("tips", "")) == OWN else _tips(tips), parameters,
+                       table.get("period", 0.1))  # fmt: skip
     if kind == "policy":
         return PolicyController(parameters.policy, parameters.observation, parameters.period)
     return RandomCommands(parameters.period)
@@ -65,7 +72,7 @@ def with_defaults(table: Mapping[str, Any]) -> dict[str, Any]:
     if named := policy.get("policy") or getattr(parameters, "policy", ""):
         read_policy(policy_folder(named))
         policy_env(named)
-    besides = {name: table[name] for name in ("tips", "period") if name in table and kind == "walker"}
+    besides = {name: table[name] for name in ("tips", "period") if name in table and kind in ("walker", "planner")}
     return {"kind": kind, **policy, **besides, **asdict(parameters)}
 
 
@@ -85,6 +92,7 @@ _KINDS: dict[str, tuple[type[Any], frozenset[str]]] = {
     # the parameters of each kind, and what its table may hold besides
     "cpg": (Cpg, frozenset({"policy"})),
     "walker": (WalkerSettings, frozenset({"tips", "period"})),
+    "planner": (PlannerSettings, frozenset({"tips", "period"})),
     "policy": (_PolicySettings, frozenset()),
     "random": (_RandomSettings, frozenset()),
 }

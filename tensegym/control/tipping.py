@@ -48,7 +48,8 @@ class Tip(Checked, error=InputError):
     """What a pull did. from_face, to_face: indices into the robot's faces, equal where it did not tip.
 
     travel: horizontal displacement of the centre of mass (2,) [m] in the frame of the face it started on (x from the
-    face's middle to its first node). peak_tension: largest in a stiff cable [N].
+    face's middle to its first node). peak_tension: largest in a stiff cable [N]. turn: angle from that line to the one
+    of the face it ended on [rad]; None in tables of earlier versions.
     """
 
     pull: Pull
@@ -56,6 +57,7 @@ class Tip(Checked, error=InputError):
     to_face: int = bounded(0, 10**6)
     travel: tuple[float, float] = noted()
     peak_tension: float = noted()
+    turn: float | None = noted(None)
 
     @property
     def tipped(self) -> bool:
@@ -90,7 +92,9 @@ def run_pull(
     dx, dy = (robot.centre_of_mass_in_world() - start)[:2]
     c, s = np.cos(angle), np.sin(angle)
     end_face = start_face if has_fallen(robot) else current_face(robot)  # lying flat is no step
-    return Tip(pull, start_face, end_face, (float(c * dx + s * dy), float(c * dy - s * dx)), peak)
+    turn = face_direction(robot, end_face, robot.node_positions_in_world()) - angle
+    return Tip(pull, start_face, end_face, (float(c * dx + s * dy), float(c * dy - s * dx)), peak,
+               float(np.remainder(turn + np.pi, 2 * np.pi) - np.pi))  # fmt: skip
 
 
 def subsets(count: int, largest: int = 3) -> Iterable[tuple[int, ...]]:

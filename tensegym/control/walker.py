@@ -71,7 +71,7 @@ class Walker:
     def angles(self, robot: TensegrityRobot, bearing: Bearing) -> FloatArray:
         """As `Controller` has it."""
         if self._pull is None or robot.time - self._since >= self._pull.duration - 1e-9:
-            self._pull, self._since = self._played(self.choose(robot, bearing.direction)), robot.time
+            self._pull, self._since = self._played(self.choose(robot, bearing)), robot.time
         return self._pull.angles(robot, robot.time - self._since)
 
     def _played(self, pull: Pull) -> Pull:
@@ -79,14 +79,14 @@ class Walker:
         depth = min(self._scale * pull.depth, self._deepest)
         return Pull(pull.drives, depth, self._settings.pull_time, self._settings.release_time)
 
-    def choose(self, robot: TensegrityRobot, direction: FloatArray) -> Pull:
-        """The pull from the table whose travel points most along ``direction``; a deep one where none tips."""
+    def choose(self, robot: TensegrityRobot, bearing: Bearing) -> Pull:
+        """The pull from the table whose travel points most along the bearing; a deep one where none tips."""
         face = current_face(robot)
         tips = self._by_face.get(face)
         if not tips:
             return replace(self._fallback, depth=self._deepest)
         angle = face_direction(robot, face, robot.node_positions_in_world())
-        wanted = heading_rotation(np.array([np.cos(angle), np.sin(angle)]))[:2, :2] @ direction
+        wanted = heading_rotation(np.array([np.cos(angle), np.sin(angle)]))[:2, :2] @ bearing.direction
         return max(tips, key=lambda tip: float(wanted @ tip.travel)).pull
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, cast
 
@@ -20,6 +21,7 @@ from .start import Start
 from .task import Task
 
 Corners = tuple[tuple[float, float], ...]
+WORST_OFF = 1e3  # rod lengths, in an episode that cannot be believed
 _CLEAR = 0.5  # rod lengths: a path of one's own that comes this near its start again is taken for one through it
 
 
@@ -57,6 +59,7 @@ class Follow(Task):
     reach: float = bounded(0.05, 10, 0.5, "L", "nearer than this the end is reached")
 
     MEASURES: ClassVar[tuple[str, ...]] = ("cross_track", "followed", "path_speed")
+    WORST: ClassVar[Mapping[str, float]] = {"cross_track": WORST_OFF}
 
     def line(self, length: float, start: FloatArray, angle: float) -> FloatArray:
         """(n, 2) points along the path [m], for rods of a length [m], from ``start`` (2,) on, at an angle [rad]."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import ClassVar, cast
 
@@ -46,6 +46,7 @@ class Navigate(Task):
     within: float = bounded(0.05, 100, 0.3, "L", "nearer than this it stays at a place")
 
     MEASURES: ClassVar[tuple[str, ...]] = ("places", "places_a_minute", "leg_speed", "stalled", "stayed")
+    WORST: ClassVar[Mapping[str, float]] = {"stalled": 1.0}
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -10,7 +10,9 @@ from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import as_design, design_to_dict
 from tensegym.design.variation import parse_variation
 
+from .follow import Follow
 from .motions import as_task, refuse_code
+from .navigate import Navigate
 from .task import Task
 from .trials import Setup, run_trials, summarise
 
@@ -52,18 +54,17 @@ def policy_setup(
 
 
 def baseline_setups(setup: Setup, period: float = CONTROL_PERIOD) -> dict[str, Setup]:
-    """Random commands and the open-loop walker on the robot and the task of another setup, by name.
+    """Random commands and the open-loop walker on the robot and the task of another setup, by name; for tasks that go
+    somewhere the planner too.
 
     The walker of a robot other than the default one tabulates it first, which takes minutes.
     """
     default = design_to_dict(setup.design) == design_to_dict(RobotDesign())
     walker = {"kind": "walker", "period": period, "tips": "" if default else "own"}
-    return {
-        "open-loop walker": replace(setup, name="open-loop walker", controller=walker),
-        "random commands": replace(
-            setup, name="random commands", controller={"kind": "random", "period": period}
-        ),
-    }
+    tables = {"open-loop walker": walker, "random commands": {"kind": "random", "period": period}}
+    if isinstance(setup.task, Navigate | Follow):
+        tables["planner"] = walker | {"kind": "planner"}
+    return {name: replace(setup, name=name, controller=table) for name, table in tables.items()}
 
 
 def evaluate(

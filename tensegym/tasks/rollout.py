@@ -9,7 +9,7 @@ import numpy as np
 
 from tensegym.control.controller import Controller
 from tensegym.errors import DesignError
-from tensegym.robot.gait import NO_GAIT, GaitMetrics
+from tensegym.robot.gait import GaitMetrics
 from tensegym.robot.robot import TensegrityRobot
 
 from .episode import Episode, Watcher
@@ -103,6 +103,6 @@ def _drive(episode: Episode, controller: Controller, watcher: Watcher | None) ->
 def _result(episode: Episode, seed: int) -> Result:
     design = episode.robot.design
     measures = {"mass": design.mass, "weight": design.mass * design.gravity, "drive_load": episode.drives.rms_current}
-    begun = episode.gait is not NO_GAIT
-    measures |= episode.task.measures(episode) if begun else dict.fromkeys(episode.task.MEASURES, 0.0)
+    task = episode.task
+    measures |= task.measures(episode) if episode.sound else {n: task.WORST.get(n, 0.0) for n in task.MEASURES}
     return Result(seed, episode.start, episode.gait, measures, str(episode.ended), episode.diverged)

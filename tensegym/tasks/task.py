@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar, TypeVar
 
@@ -57,6 +58,8 @@ class Task(Checked, error=DesignError):
 
     MEASURES: ClassVar[tuple[str, ...]] = ()
     """Names of the metrics of its own."""
+    WORST: ClassVar[Mapping[str, float]] = {}
+    """What they are taken as in an episode that cannot be believed; 0 where nothing is said."""
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -54,7 +54,7 @@ def check_setup(setup: Setup) -> None:
     with closing(setup.robot()) as robot:
         controller = make_controller(setup.controller)
         whole_steps(controller.period, setup.task.dt)
-        if setup.controller.get("kind") != "walker":  # which may tabulate its robot first
+        if setup.controller.get("kind") not in ("walker", "planner"):  # which may tabulate its robot first
             episode = Episode(robot, setup.task, np.random.default_rng(0))
             controller.begin(robot, 0)
             if not episode.diverged:
@@ -116,7 +116,7 @@ def summarise(results: Sequence[Result]) -> dict[str, Any]:
     """Median, mean with its 95 % interval (normal; None of one trial), and the counts a gait is judged by.
 
     The way of a trial that diverged or broke the energy audit does not count: its speed, and what the task measures, is
-    taken as 0.
+    taken as 0, or the worst.
     """
     gaits = [result.gait for result in results]
     sound = np.array([result.sound for result in results])
@@ -139,7 +139,7 @@ def summarise(results: Sequence[Result]) -> dict[str, Any]:
         "audit_failures": sum(not gait.audit_passed for gait in gaits),
         "audit_excess_max": float(max(gait.audit_excess for gait in gaits)),
         "terminated": sum(result.diverged for result in results),
-        "measures": {name: _spread([result.measures[name] if result.sound else 0.0 for result in results])
+        "measures": {name: _spread([result.measures[name] for result in results])
                      for name in results[0].measures},
     }
 

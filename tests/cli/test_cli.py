@@ -197,7 +197,7 @@ def test_a_table_goes_to_json_and_back(tips, tmp_path):
     save_table(tips, tmp_path / "tips.json")
     assert load_table(tmp_path / "tips.json") == tips
     (tmp_path / "bad.json").write_text('[{"pull": 1}]')
-    with pytest.raises(InputError, match="is not a table of tips"):
+    with pytest.raises(InputError, match="tips row 1.pull = 1 must be a table"):
         load_table(tmp_path / "bad.json")
 
 
@@ -211,7 +211,7 @@ def test_the_walker_picks_the_pull_that_leads_nearest_the_direction(tips, headin
         wanted = np.array([np.cos(direction), np.sin(direction)])
         walker = Walker(tips)
         walker.begin(robot)
-        pull = walker.choose(robot, wanted)
+        pull = walker.choose(robot, Bearing(wanted))
         start = robot.centre_of_mass_in_world()[:2]
         tip = run_pull(robot, pull)
         gained = wanted @ (robot.centre_of_mass_in_world()[:2] - start)
