@@ -1,15 +1,16 @@
-"""The substep of a rolling robot beside the engine's own step, a Python cable loop and MuJoCo's step of its twin.
+"""The substep of a rolling robot beside the engine's own step, in MuJoCo, as a Python cable loop and by MuJoCo alone.
 
 The robot rolls under random commands, and all step the same motion: ours in the compiled loop; the engine's own step on
-the recorded forces of that block, from its saved start; the reference loop in Python; the twin from where the robot
-stands. Seconds are those of this thread's processor time, which other programs on the machine do not add to.
+the recorded forces of that block, from its saved start; the reference loop in Python; MuJoCo alone from where the
+robot stands. Seconds are those of this thread's processor time, which other programs on the machine do not add to.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
+import mujoco
 import numpy as np
 import pybullet
 from numba import njit
@@ -17,6 +18,7 @@ from timing import OneCore, Row, in_turn, row
 
 from tensegym.bullet.c_interface import client_handle, push_and_step
 from tensegym.design.design import Payload, RobotDesign
+from tensegym.mujoco.robot_mjcf import robot_mjcf
 from tensegym.physics.model import DAMPING, END_A, END_B, STIFFNESS
 from tensegym.robot.robot import TensegrityRobot
 
@@ -50,9 +52,9 @@ class Rolling:
             robot.close()
 
     def substep(self) -> float:
-        commands = self.rng.uniform(0, 1, len(self.ours.drives)) * self.ours.command_limit
-        self.ours.command(commands)
-        self.reference.command(commands)
+        self.commands = self.rng.uniform(0, 1, len(self.ours.drives)) * self.ours.command_limit
+        self.ours.command(self.commands)
+        self.reference.command(self.commands)
         began = time.thread_time()
         self.ours.step(BLOCK)
         return (time.thread_time() - began) / BLOCK * 1e6
@@ -110,20 +112,30 @@ class Rolling:
         return (time.thread_time() - began) / BLOCK * 1e6
 
 
-def twin_block(rolling: Rolling, design: RobotDesign, dt: float) -> Callable[[], float]:
-    """MuJoCo, Euler: from where our robot stands now, its rest lengths moving there as ours do, ten steps at a time."""
-    from twin import Twin
+class InMujoco:
+    """Our robot in MuJoCo, and MuJoCo alone with the robot as `tensegym export` writes it, from where ours stands."""
 
-    twin = Twin(design, dt)
+    def __init__(self, rolling: Rolling, design: RobotDesign, dt: float) -> None:
+        self.rolling = rolling
+        self.robot = TensegrityRobot(design, dt=dt, engine="mujoco")
+        self.model = mujoco.MjModel.from_xml_string(robot_mjcf(design, dt=dt, integrator="Euler"))
+        self.data = mujoco.MjData(self.model)
 
-    def measure() -> float:
-        twin.place(rolling.ours.poses_in_world)
-        twin.set_rest_lengths(rolling.ours.natural_lengths)
+    def substep(self) -> float:
+        self.robot.command(self.rolling.commands)
         began = time.thread_time()
-        twin.step(BLOCK)
+        self.robot.step(BLOCK)
         return (time.thread_time() - began) / BLOCK * 1e6
 
-    return measure
+    def alone(self) -> float:
+        ours, coordinates = self.rolling.ours, self.data.qpos.reshape(-1, 7)
+        mujoco.mj_resetData(self.model, self.data)
+        coordinates[:, :3] = ours.poses_in_world[:, :3]
+        coordinates[:, 3:] = np.roll(ours.poses_in_world[:, 3:], 1, axis=1)
+        self.data.ctrl[:] = (ours.model.rest_lengths[: len(ours.lengths)] - ours.natural_lengths)[ours.model.driven]
+        began = time.thread_time()
+        mujoco.mj_step(self.model, self.data, nstep=BLOCK)
+        return (time.thread_time() - began) / BLOCK * 1e6
 
 
 CASES = (("1 ms explicit", RobotDesign(), 1e-3), ("2 ms implicit", RobotDesign(), 2e-3),
@@ -132,7 +144,7 @@ CASES = (("1 ms explicit", RobotDesign(), 1e-3), ("2 ms implicit", RobotDesign()
 
 
 def rows(rounds: int) -> Iterator[Row]:
-    """Ratios of the substep on one core, case by case; the naive loop and the twin are of 1 ms."""
+    """Ratios of the substep on one core, case by case; the naive loop and MuJoCo alone are of 1 ms."""
     with OneCore():
         for name, design, dt in CASES:
             yield from _case(name, design, dt, rounds)
@@ -141,14 +153,18 @@ def rows(rounds: int) -> Iterator[Row]:
 def _case(name: str, design: RobotDesign, dt: float, rounds: int) -> Iterator[Row]:
     unit, rolling = "us", Rolling(design, dt)
     contestants = {"substep": rolling.substep, "python": rolling.python_loop, "bare": rolling.bare_step}
+    other = InMujoco(rolling, design, dt)
+    contestants["in MuJoCo"] = other.substep
     if dt == 1e-3:
-        contestants |= {"naive": rolling.naive, "MuJoCo": twin_block(rolling, design, dt)}
+        contestants |= {"naive": rolling.naive, "MuJoCo": other.alone}
     try:
         seen = in_turn(contestants, rounds)
     finally:
         rolling.close()
+        other.robot.close()
     yield row(f"substep, {name} / bare stepSimulation", seen["substep"], seen["bare"], unit, 2.0)
     yield row(f"Python calls around the kernel / substep, {name}", seen["python"], seen["substep"], unit)
+    yield row(f"substep in MuJoCo / in PyBullet, {name}", seen["in MuJoCo"], seen["substep"], unit)
     if dt == 1e-3:
         yield row(f"naive Python loop / substep, {name}", seen["naive"], seen["substep"], unit, 10, at_least=True)
-        yield row(f"substep, {name} / MuJoCo Euler step of the twin", seen["substep"], seen["MuJoCo"], unit, 1.4)
+        yield row(f"substep, {name} / Euler step of MuJoCo alone", seen["substep"], seen["MuJoCo"], unit, 1.4)

@@ -1,12 +1,13 @@
-"""Simulated seconds a processor second against the error of the motion: ours and MuJoCo's integrators of the twin.
+"""Simulated seconds a processor second against the error of the motion: ours in both engines, and MuJoCo alone.
 
     python benchmarks/work_precision.py        prints the tables, writes docs/work_precision.png
 
 The robot tumbles in free flight; every other stiff cable is wound in for 0.3 s and paid out for as long, at the drives'
 speed, then all are held until 1 s. Rest lengths are that function of time for all, taken before every step, and some
-cables fall slack and snap taut. There is no spin damping, since the twin has none. The error is the RMS, over the nodes
+cables fall slack and snap taut. MuJoCo alone is the robot as `tensegym export` writes it, its cables MuJoCo's own
+tendons. There is no spin damping, since MuJoCo has none. The error is the RMS, over the nodes
 and over every 20 ms, of node positions about the centre of mass, against the same engine at its finest step; how far
-the two finest motions are apart is what twin and robot differ in. Schemes of one force a step keep velocities half a
+the two finest motions are apart is what the two differ in. Schemes of one force a step keep velocities half a
 step before the poses and start with those. Time is taken while the cables are held.
 """
 
@@ -29,11 +30,11 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 from timing import OneCore, in_turn, machine
-from twin import INTEGRATORS, Twin
 
 from tensegym.arrays import FloatArray
 from tensegym.design.design import RobotDesign
 from tensegym.errors import DesignError, SimulationError
+from tensegym.mujoco.robot_mjcf import robot_mjcf
 from tensegym.physics.geometry import points_at
 from tensegym.physics.readings import step_back
 from tensegym.physics.robot_arrays import robot_model
@@ -41,7 +42,8 @@ from tensegym.report import table
 from tensegym.robot.robot import TensegrityRobot
 
 DESIGN = RobotDesign(spin_damping=0.0, drive=replace(RobotDesign().drive, speed_limit=1e-9))  # locked: see natural_at
-BARE = DESIGN.with_(stiff_cable=replace(DESIGN.stiff_cable, damping=0.0))  # they act on the twin's slack tendons too
+BARE = DESIGN.with_(stiff_cable=replace(DESIGN.stiff_cable, damping=0.0))
+INTEGRATORS = {"MuJoCo Euler": "Euler", "MuJoCo implicitfast": "implicitfast", "MuJoCo RK4": "RK4"}
 MODEL = robot_model(DESIGN)
 SPIN = np.array([2.0, 3.0, 1.0])  # rad/s, of the whole robot at the start
 DEPTHS = np.array([0.06, 0, 0.06, 0, 0.06, 0])  # m
@@ -71,9 +73,9 @@ class Ours:
 
     lag = 0.5
 
-    def __init__(self, integrator: Any, dt: float, design: RobotDesign = DESIGN) -> None:
+    def __init__(self, integrator: Any, dt: float, design: RobotDesign = DESIGN, engine: str = "pybullet") -> None:
         self.dt = dt
-        self.robot = TensegrityRobot(design, dt=dt, ground=False, integrator=integrator)
+        self.robot = TensegrityRobot(design, dt=dt, ground=False, integrator=integrator, engine=engine)
         self.poses, self.velocities = lambda: self.robot.poses_in_world, self.robot.velocities_in_world
 
     def place(self, poses: FloatArray, velocities: FloatArray) -> None:
@@ -85,17 +87,35 @@ class Ours:
 
 
 class Theirs:
-    """The twin, likewise. Raises SimulationError where MuJoCo warns that it has diverged."""
+    """MuJoCo alone, likewise. Raises SimulationError where it warns that it has diverged."""
 
     def __init__(self, integrator: str, dt: float, design: RobotDesign = DESIGN) -> None:
         self.dt, self.lag = dt, 0.0 if integrator == "RK4" else 0.5
-        self.twin = Twin(design, dt, integrator, ground=False)
-        self.place, self.poses, self.velocities = self.twin.place, self.twin.poses, self.twin.velocities
+        text = robot_mjcf(design, dt=dt, integrator=integrator, ground=False)
+        self.model = mujoco.MjModel.from_xml_string(text)
+        self.data = mujoco.MjData(self.model)
+
+    def place(self, poses: FloatArray, velocities: FloatArray) -> None:
+        mujoco.mj_resetData(self.model, self.data)
+        coordinates, speeds = self.data.qpos.reshape(-1, 7), self.data.qvel.reshape(-1, 6)
+        coordinates[:, :3], coordinates[:, 3:] = poses[:, :3], np.roll(poses[:, 3:], 1, axis=1)
+        speeds[:, :3] = velocities[:, :3]
+        speeds[:, 3:] = Rotation.from_quat(poses[:, 3:]).inv().apply(velocities[:, 3:])  # body axes
+
+    def poses(self) -> FloatArray:
+        poses = self.data.qpos.reshape(-1, 7).copy()
+        poses[:, 3:] = np.roll(poses[:, 3:], -1, axis=1)
+        return poses
+
+    def velocities(self) -> FloatArray:
+        velocities = self.data.qvel.reshape(-1, 6).copy()
+        velocities[:, 3:] = Rotation.from_quat(self.poses()[:, 3:]).apply(velocities[:, 3:])
+        return velocities
 
     def step(self, natural: FloatArray, count: int) -> None:
-        self.twin.set_rest_lengths(natural)
-        self.twin.step(count)
-        if any(warning.number for warning in self.twin.data.warning):
+        self.data.ctrl[:] = (MODEL.rest_lengths - natural)[MODEL.driven]
+        mujoco.mj_step(self.model, self.data, nstep=count)
+        if any(warning.number for warning in self.data.warning):
             raise SimulationError(f"MuJoCo diverged at {self.dt:g} s")
 
 
@@ -164,8 +184,10 @@ def start_acceleration() -> FloatArray:
 
 
 EXPLICIT, IMPLICIT, RK4 = "ours, explicit", "ours, implicit", "MuJoCo RK4"
+IN_MUJOCO = "ours, implicit, in MuJoCo"
 SCHEMES: dict[str, Callable[..., Ours | Theirs]] = {
     EXPLICIT: partial(Ours, "explicit"), IMPLICIT: partial(Ours, "implicit"),
+    IN_MUJOCO: partial(Ours, "implicit", engine="mujoco"),
     **{name: partial(Theirs, kind) for name, kind in INTEGRATORS.items()},
 }  # fmt: skip
 FINEST = {EXPLICIT: 1e-5, RK4: 5e-5}  # s
@@ -220,7 +242,7 @@ def draw(seen: dict[str, dict[float, Motion | str]], ours: Motion, theirs: Motio
         if name == IMPLICIT:
             left.plot(errors[DEFAULT], paces[DEFAULT], "*", ms=15, color=line.get_color(),
                       label="the environments' time step")  # fmt: skip
-    left.axvline(1e3 * ours.error(theirs), color="0.5", ls="--", lw=1, label="finest motions of robot and twin apart")
+    left.axvline(1e3 * ours.error(theirs), color="0.5", ls="--", lw=1, label="finest motions of both apart")
     left.set(xlabel="RMS error of node positions over 1 s [mm]", ylabel="simulated seconds a processor second",
              title="Work against precision (numbers: time step [ms])")  # fmt: skip
     right.set(xlabel="time step [ms]", ylabel="largest relative change in 1 s [-]",
@@ -252,7 +274,8 @@ def main() -> None:
     print(f"\nfinest motions, {FINEST} s, apart: {1e3 * ours.error(theirs):.3g} mm; "
           f"without dampers on the stiff cables: {1e3 * ours_bare.error(theirs_bare):.3g} mm")  # fmt: skip
     default = seen[IMPLICIT][DEFAULT]
-    for name, dt in ((EXPLICIT, 1e-3), (EXPLICIT, 1.25e-3), (IMPLICIT, 4e-3), ("MuJoCo Euler", 1e-3)):
+    others = (EXPLICIT, 1e-3), (EXPLICIT, 1.25e-3), (IMPLICIT, 4e-3), (IN_MUJOCO, 2e-3), ("MuJoCo Euler", 1e-3)
+    for name, dt in others:
         other = seen[name][dt]
         assert isinstance(default, Motion) and isinstance(other, Motion)
         low, ratio, high = np.quantile(default.paces / other.paces, [0.1, 0.5, 0.9])

@@ -20,6 +20,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "step": ("tensegym.cli.step:Step", "tip from one face onto the next; --all-faces: which pull tips which face"),
     "simulate": ("tensegym.cli.simulate:Simulate", "drive-angle commands in, the whole motion out, as CSV"),
     "modes": ("tensegym.cli.modes:Modes", "free modes of a design, and the loads of its rods"),
+    "export": ("tensegym.cli.export:Export", "a design as MJCF, with tendons and winches, or as URDF"),
     "validate": ("tensegym.cli.validate:Validate", "physics against closed forms: expected, measured, tolerance"),
     "train": ("tensegym.cli.train:Train", "train a rolling policy with PPO; resumable"),
     "evaluate": ("tensegym.cli.evaluate:Evaluate", "judge a policy and the baselines over many seeds"),

@@ -22,11 +22,14 @@ def scene_mjcf(scene: Scene) -> str:
     """What `MujocoWorld` loads: the integrator whose step the leapfrog is made of, no automatic resets."""
     bodies = [body_mjcf(body, pose) for body, pose in zip(scene.bodies, scene.poses, strict=True)]
     asset, ground = ground_mjcf(scene.ground)
-    option = (
-        f'<option timestep="{scene.dt:.17g}" gravity="0 0 {-scene.gravity:.17g}" integrator="Euler" cone="elliptic" '
-        f'impratio="{FRICTION_RATIO}"><flag autoreset="disable"/></option>'
-    )
+    option = option_mjcf(scene.dt, scene.gravity, "Euler", '<flag autoreset="disable"/>')
     return mjcf("scene", option, scene.friction, asset, [*ground, *bodies])
+
+
+def option_mjcf(dt: float, gravity: float, integrator: str, flags: str = "") -> str:
+    """Time step [s], gravity straight down [m/s^2], MuJoCo's name of an integrator; how contacts are solved."""
+    return (f'<option timestep="{dt:.17g}" gravity="0 0 {-gravity:.17g}" integrator="{integrator}" cone="elliptic" '
+            f'impratio="{FRICTION_RATIO}">{flags}</option>')  # fmt: skip
 
 
 def mjcf(name: str, option: str, friction: float, asset: list[str], parts: list[str], rest: Sequence[str] = ()) -> str:
@@ -56,25 +59,28 @@ def ground_mjcf(ground: Ground | None) -> tuple[list[str], list[str]]:
             [f'    <geom name="ground" type="hfield" hfield="ground" pos="0 0 {low:.17g}"/>'])  # fmt: skip
 
 
-def body_mjcf(body: Body, pose: FloatArray, name: str = "", sites: Sequence[str] = (), seen: bool = False) -> str:
+def body_mjcf(
+    body: Body, pose: FloatArray, name: str = "", sites: Sequence[str] = ("", ""), pin: str = "", seen: bool = False
+) -> str:
     """A free body at a pose (7,) of its first link's centre, position and xyzw.
 
     Args:
         name: in place of the body's own, which equal bodies share; without one it has none.
-        sites: elements in its links, the second link's in the last entry where it has one.
+        sites: more elements of its first and of its second link.
+        pin: more attributes of the joint between them.
         seen: also the shapes that do not touch anything.
     """
-    inside = [_link(body.link, seen), *sites[:1]]
+    inside = [_link(body.link, seen), sites[0]]
     if body.pin and body.second:
         limit = body.pin.limit
         inside += [
             f'      <body pos="0 0 {body.pin.z:.17g}"{_named(name, "_2")}>',
-            f'      <joint type="hinge" axis="0 1 0" range="{-limit:.17g} {limit:.17g}"{_named(name, "_pin")}/>',
-            _link(body.second, seen), *sites[1:], "      </body>",
+            f'      <joint type="hinge" axis="0 1 0" range="{-limit:.17g} {limit:.17g}"{_named(name, "_pin")}{pin}/>',
+            _link(body.second, seen), sites[1], "      </body>",
         ]  # fmt: skip
     place, turn = text(pose[:3]), text(np.roll(pose[3:], 1))
-    return "\n".join([f'    <body pos="{place}" quat="{turn}"{_named(name)}>', "      <freejoint/>", *inside,
-                      "    </body>"])  # fmt: skip
+    lines = [f'    <body pos="{place}" quat="{turn}"{_named(name)}>', "      <freejoint/>", *inside, "    </body>"]
+    return "\n".join(filter(None, lines))
 
 
 def _named(name: str, suffix: str = "") -> str:
