@@ -21,6 +21,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "simulate": ("tensegym.cli.simulate:Simulate", "drive-angle commands in, the whole motion out, as CSV"),
     "modes": ("tensegym.cli.modes:Modes", "free modes of a design, and the loads of its rods"),
     "export": ("tensegym.cli.export:Export", "a design as MJCF, with tendons and winches, or as URDF"),
+    "compare": ("tensegym.cli.compare:Compare", "PyBullet and MuJoCo side by side: flight, rest, steps, a policy"),
     "validate": ("tensegym.cli.validate:Validate", "physics against closed forms: expected, measured, tolerance"),
     "train": ("tensegym.cli.train:Train", "train a rolling policy with PPO; resumable"),
     "evaluate": ("tensegym.cli.evaluate:Evaluate", "judge a policy and the baselines over many seeds"),
