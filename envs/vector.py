@@ -8,13 +8,14 @@ import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
+from tensegym.engine import Uncopied
 from tensegym.errors import DesignError
 
 from .batch import make_batch
 from .rolling import RollingEnv
 
 
-class RollingVectorEnv(VectorEnv):
+class RollingVectorEnv(Uncopied, VectorEnv):
     """`RollingEnv` times ``num_envs``, over ``processes`` (by default one a core); one env's arguments otherwise.
 
     `gymnasium.make_vec("tensegym/SixRodRolling-v0", num_envs=8)` makes one. An episode that ends, by itself or after

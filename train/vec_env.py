@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from stable_baselines3.common.vec_env import VecEnv
 
+from tensegym.engine import Uncopied
 from tensegym.envs.batch import make_batch
 
 
-class RollingVecEnv(VecEnv):
+class RollingVecEnv(Uncopied, VecEnv):
     """N environments in as many processes as there are cores (or ``processes``), whatever N.
 
     Seeds, episode ends and infos are as those of stable-baselines3's own vector environments, and so are the numbers:

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from tensegym.arrays import FloatArray
+from tensegym.engine import Uncopied
 from tensegym.errors import SimulationError
 
 from .bodies import make_ground
@@ -27,7 +28,7 @@ def _disconnect(client: int) -> None:
         pybullet.disconnect(physicsClientId=client)
 
 
-class Client:
+class Client(Uncopied):
     """A connection to the engine. gravity: straight down [m/s^2].
 
     Raises SimulationError for a window without a display.

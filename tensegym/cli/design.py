@@ -19,6 +19,7 @@ from tensegym.search.problem import Problem, load_problem, problem_from
 from tensegym.search.store import Finished, Store, masked
 from tensegym.search.winner import best_number
 from tensegym.search.workers import Workers, check_workers, open_workers
+from tensegym.tables import in_file, read_text
 
 from .options import Count, Jobs, Seed
 
@@ -105,7 +106,7 @@ class Resume(_Search):
         check_engine(found.task.engine)
         with open_workers(self.workers, self.jobs, self.address) as pool, lock_folder(self.folder):
             problem, store = open_search(self.folder, self.storage)
-            return self._go(problem, store, pool, self.budget or store.noted("budget"), self.folder)
+            return self._go(problem, store, pool, self.budget or store.budget, self.folder)
 
 
 @dataclass(frozen=True)
@@ -127,11 +128,15 @@ def open_search(folder: Path, storage: str | None = None) -> tuple[Problem, Stor
     note = folder / "storage.txt"
     if not note.is_file():
         raise FileNotFoundError(f"no search in {folder}; start one with `tensegym design run --out {folder}`")
-    kept = note.read_text()
+    kept = read_text(note, "note of a search's storage", InputError)
     if storage is None and "***" in kept:
         raise InputError(f"the search in {folder} is kept at {kept}, and passwords are not: give --storage URL again")
     store = Store(folder, None, storage or kept or None)
-    return problem_from(store.problem_text, str(folder), kept=True), store
+    problem = problem_from(store.problem_text, str(folder), kept=True)
+    for number, (values, outcome) in store.finished().items():
+        with in_file(f"{folder}: trial {number}"):
+            problem.check(values, None if outcome.refused is not None else outcome.metrics)
+    return problem, store
 
 
 def _score(problem: Problem, outcome: TrialResult) -> float:
@@ -143,7 +148,7 @@ def _score(problem: Problem, outcome: TrialResult) -> float:
 
 def _status(problem: Problem, store: Store, folder: Path) -> Report:
     finished: Finished = store.finished()
-    budget = store.noted("budget")
+    budget = store.budget
     data: dict[str, Any] = {
         "folder": str(folder), "trials": len(finished), "budget": budget,
         "refused": sum(o.refused is not None for _, o in finished.values()),

@@ -119,12 +119,12 @@ def load_policy(name: str | Path) -> Policy:
         FileNotFoundError, InputError: as `policy_folder`, or the policy's files are none.
     """
     folder = policy_folder(name)
-    return _read_once(str(name), folder, (folder / WEIGHTS).stat().st_mtime_ns)
+    return _read_once(str(name), folder, tuple((folder / file).stat().st_mtime_ns for file in FILES))
 
 
 @lru_cache(maxsize=16)
-def _read_once(name: str, folder: Path, changed: int) -> Policy:
-    """One policy for all episodes of a process, until its file is changed."""
+def _read_once(name: str, folder: Path, changed: tuple[int, ...]) -> Policy:
+    """One policy for all episodes of a process, until one of its files is changed."""
     return Policy(name, read_policy(folder), policy_env(folder))
 
 

@@ -17,6 +17,7 @@ from tensegym.physics.terrain import Ground
 
 from .leapfrog import leapfrog
 from .scene import Scene
+from .uncopied import Uncopied
 
 State = Any
 """An engine's state as `World.save` gives it."""
@@ -42,7 +43,7 @@ class Contact(NamedTuple):
     """(3,) and what along the surface [N]."""
 
 
-class World(ABC):
+class World(Uncopied, ABC):
     """Rigid bodies of one link, or of two that a pin joins, which touch the ground and each other: the protocol of
     engines.
 

@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
 from tensegym.bullet import Articulated, Client
+from tensegym.engine import Closed, Uncopied
 from tensegym.errors import FlexureError
 from tensegym.flexure.hinge.ranges import check_choice, check_not_negative, check_positive, finite_array
 from tensegym.physics.readings import Energies
@@ -27,7 +29,7 @@ from .tree import read_tree
 from .tree_kernel import frames
 
 
-class FlexibleRobot:
+class FlexibleRobot(Uncopied):
     """A URDF's robot in a world of its own. Its joints are free of motors; flexures and ``torques`` move them.
 
     A context manager. Build flexures in with ``FlexureJoint(robot, "knee", joint)``.
@@ -56,6 +58,9 @@ class FlexibleRobot:
         FileNotFoundError: for a path that is not there.
     """
 
+    body: Articulated
+    _stepper: Stepper
+
     def __init__(
         self, urdf: str | Path, *, dt: float = 1e-3, gravity: Sequence[float] = (0.0, 0.0, -9.81),
         pose: Sequence[float] = ORIGIN, fixed_base: bool = False, ground: bool = False, friction: float = 0.8,
@@ -79,7 +84,9 @@ class FlexibleRobot:
         self._load()
 
     def close(self) -> None:
+        """Free the engine; what needs it raises SimulationError from now on."""
         self.world.close()
+        self.body = self._stepper.body = cast(Articulated, Closed())
 
     def __enter__(self) -> FlexibleRobot:
         return self
@@ -98,7 +105,7 @@ class FlexibleRobot:
         self._load()
 
     def _load(self) -> None:
-        self.body: Articulated = self.urdf.load(self.world, self.friction)
+        self.body = self.urdf.load(self.world, self.friction)
         if self.body.said:
             warnings.warn(f"{self.urdf.path.name}: PyBullet says: {self.body.said}", UserWarning, stacklevel=3)
         if self.fixed_base and not self.body.moving:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import TracebackType
-from typing import Literal
+from typing import Literal, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
 from tensegym.design.design import RobotDesign
+from tensegym.engine import Closed, World
 from tensegym.errors import DesignError, SimulationError
 from tensegym.physics.drives import COMMAND
 from tensegym.physics.model import Model
@@ -62,7 +63,9 @@ class TensegrityRobot(RobotState):
         self.reset()
 
     def close(self) -> None:
+        """Free the engine; what needs it raises SimulationError from now on."""
         self.world.close()
+        self.world = cast(World, Closed())
 
     def __enter__(self) -> TensegrityRobot:
         return self

@@ -8,7 +8,7 @@ import numpy as np
 
 from tensegym.arrays import FloatArray
 from tensegym.design.design import RobotDesign
-from tensegym.engine import World
+from tensegym.engine import Uncopied, World
 from tensegym.physics.drives import ROTOR_ANGLE
 from tensegym.physics.geometry import points_at
 from tensegym.physics.model import STIFFNESS, Model, new_out, new_state
@@ -29,7 +29,7 @@ from tensegym.structure.faces import Faces, hull_faces
 from .sensors import Sensors
 
 
-class RobotState:
+class RobotState(Uncopied):
     """A design's bodies in a world and the arrays of its substeps, which nothing else writes to.
 
     Rows of per-body arrays are the rods in their order (of split rods the first halves), then the payload, then the

@@ -15,6 +15,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
@@ -114,6 +115,21 @@ class Problem:
         for metric in [o.metric for o in self.settings.objectives] + [c.metric for c in self.settings.constraints]:
             if metric not in known:
                 raise InputError(f"no metric measures {metric!r}; one of {', '.join(known)}")
+
+    def check(self, values: Mapping[str, Any], metrics: Mapping[str, float] | None) -> None:
+        """Look whether a stored trial is one of this search: its values, and its metrics where it has a result.
+
+        Raises InputError naming what is missing.
+        """
+        for dimension in self.space.dimensions:
+            if dimension.name not in values:
+                raise InputError(f"{dimension.name!r} has no value")
+            dimension.check(values[dimension.name])
+        if metrics is not None:
+            for name in ("sound", *(o.metric for o in self.settings.objectives), self.task.goal.metric,
+                         *(c.metric for c in self.settings.constraints)):  # fmt: skip
+                if name not in metrics:
+                    raise InputError(f"{name!r} was not measured")
 
     def losses(self, metrics: dict[str, float]) -> list[float]:
         """By how much each constraint is broken; 0 or less is kept. The first is that no episode is disqualified."""

@@ -40,6 +40,14 @@ class Dimension:
         """As in a task file; [i] behind it where it is an entry of a vector."""
         return ".".join(self.path) + ("" if self.entry is None else f"[{self.entry}]")
 
+    def check(self, value: Any) -> None:
+        """Raises InputError for a value, stored with a trial, that is none of this dimension's."""
+        number = as_number(value, self.name, InputError)
+        low, high = (0, len(self.choices) - 1) if self.choices else (self.range.low, self.range.high)
+        room = 0 if self.choices else 1e-9 * (high - low)
+        if not low - room <= number <= high + room or (self.choices and number % 1):
+            raise InputError(one_line(f"{self.name} = {show(value)} is outside [{low:g}, {high:g}]"))
+
     def put(self, tables: Tables, value: Any) -> None:
         """Write a value into nested tables, making those on the way."""
         if self.entry is None:

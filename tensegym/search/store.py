@@ -6,18 +6,21 @@ A trial is written in one transaction when it is finished, never before, so a ki
 from __future__ import annotations
 
 import re
-from dataclasses import asdict
+import sqlite3
+from contextlib import closing
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import optuna
 import sqlalchemy
-from optuna.trial import TrialState, create_trial
+from optuna.trial import FrozenTrial, TrialState, create_trial
 from sqlalchemy.exc import SQLAlchemyError
 
 from tensegym.errors import InputError
 from tensegym.files import VERSION, without_version
+from tensegym.tables import as_number, as_text, as_whole, fill, one_line
 
 from .asker import Asker
 from .evaluate import TrialResult
@@ -38,6 +41,11 @@ def _unanswered(url: str, error: Exception) -> InputError:
     return InputError(f"storage {masked(url)!r} does not answer: {reason}")
 
 
+def _unreadable(url: str, error: Exception) -> InputError:
+    reason = f"{type(error).__name__}: {error}".replace(url, masked(url))
+    return InputError(one_line(f"storage {masked(url)!r} holds no study that can be read: {reason}"))
+
+
 class Store:
     """The study of one output folder. url: default study.db in the folder.
 
@@ -48,6 +56,8 @@ class Store:
         url = url or f"sqlite:///{folder / 'study.db'}"
         name = "tensegym design" if url.startswith("sqlite:///") else f"tensegym design {folder.resolve().name}"
         optuna.logging.set_verbosity(optuna.logging.ERROR)
+        if problem is None and url.startswith("sqlite:///"):
+            _check_database(Path(url.removeprefix("sqlite:///")))
         try:
             storage = optuna.storages.RDBStorage(url)
             if url.startswith("sqlite:"):
@@ -64,9 +74,11 @@ class Store:
             raise InputError(f"{masked(url)} holds no study {name!r}; start one with `tensegym design run`") from error
         except (SQLAlchemyError, ImportError, optuna.exceptions.OptunaError) as error:
             raise _unanswered(url, error) from None
+        except Exception as error:  # of what Optuna finds in a database of something else
+            raise _unreadable(url, error) from None
         self._url = url
         without_version({"version": self.noted("version") or 0}, masked(url))
-        known = self._study.user_attrs.get("problem")
+        known = self.noted("problem")
         if problem is not None and known is None:
             self.note("version", VERSION)
             self.note("problem", problem.text)
@@ -75,7 +87,13 @@ class Store:
 
     @property
     def problem_text(self) -> str:
-        return self._study.user_attrs["problem"]
+        """The task file of the search. Raises InputError where the study has none."""
+        return as_text(self.noted("problem"), f"{masked(self._url)}: problem", InputError)
+
+    @property
+    def budget(self) -> int:
+        """Trials in all, as last asked for. Raises InputError where the study does not say."""
+        return as_whole(self.noted("budget"), f"{masked(self._url)}: budget", InputError, "--budget to resume it with")
 
     @property
     def study(self) -> optuna.Study:
@@ -90,8 +108,11 @@ class Store:
             raise _unanswered(self._url, error) from None
 
     def noted(self, key: str) -> Any:
-        """What `note` kept, or None."""
-        return self._study.user_attrs.get(key)
+        """What `note` kept, or None. Raises InputError where the database cannot be read."""
+        try:
+            return self._study.user_attrs.get(key)
+        except Exception as error:
+            raise _unreadable(self._url, error) from None
 
     def add(self, asker: Asker, values: dict[str, Value], outcome: TrialResult) -> None:
         """Write a finished trial. Raises InputError where the database does not take it, as on a full disk."""
@@ -108,7 +129,7 @@ class Store:
 
     def pace(self, budget: int) -> dict[str, float | None]:
         """Trials a minute over the last fifty, and the seconds that ``budget`` trials still take at that rate."""
-        ends = sorted(t.datetime_complete for t in self._study.get_trials(deepcopy=False) if t.datetime_complete)
+        ends = sorted(t.datetime_complete for t in self._trials() if t.datetime_complete)
         recent = ends[-50:]
         span = (recent[-1] - recent[0]).total_seconds() if len(recent) > 1 else 0.0
         if not span:
@@ -118,17 +139,39 @@ class Store:
 
     def seconds(self) -> float:
         """Wall time of the search [s]: between its trials' ends, less any break of over ten minutes."""
-        times = [t.datetime_complete.timestamp() for t in self._study.get_trials(deepcopy=False) if t.datetime_complete]
+        times = [t.datetime_complete.timestamp() for t in self._trials() if t.datetime_complete]
         gaps = np.diff(sorted(times))
         return float(gaps[gaps < 600].sum())
 
     def finished(self) -> Finished:
-        """Every trial that is done, by number."""
+        """Every trial that is done, by number. Raises InputError for one that this package has not written."""
         found: Finished = {}
-        for trial in self._study.get_trials(deepcopy=False):
-            outcome = TrialResult(**trial.user_attrs["outcome"])
-            found[outcome.number] = (dict(trial.params), outcome)
+        for trial in self._trials():
+            where = f"{masked(self._url)}: trial {trial.number}"
+            outcome = fill(TrialResult, trial.user_attrs.get("outcome"), where, InputError)
+            metrics = {name: _number(value, f"{where}: {name}") for name, value in outcome.metrics.items()}
+            found[outcome.number] = (dict(trial.params), replace(outcome, metrics=metrics))
         return found
+
+    def _trials(self) -> list[FrozenTrial]:
+        try:
+            return self._study.get_trials(deepcopy=False)
+        except Exception as error:
+            raise _unreadable(self._url, error) from None
+
+
+def _number(value: Any, where: str) -> float:
+    """A metric, which may be infinite. Raises InputError."""
+    return value if isinstance(value, float) else as_number(value, where, InputError)
+
+
+def _check_database(path: Path) -> None:
+    """Look whether a file holds a study, without writing to it as Optuna does. Raises InputError."""
+    try:
+        with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)) as database:
+            database.execute("SELECT study_name FROM studies LIMIT 1")
+    except (sqlite3.Error, ValueError) as error:
+        raise InputError(one_line(f"{path} holds no study: {error}")) from None
 
 
 def _write_ahead(connection: Any, _: Any) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from tensegym.arrays import FloatArray
 from tensegym.control.bearing import Bearing
+from tensegym.engine import Uncopied
 from tensegym.errors import SimulationError
 from tensegym.robot.gait import NO_GAIT, DriveMeter, GaitMeter, GaitMetrics
 from tensegym.robot.reading import NODE_REACH, Reading, farthest_node, read
@@ -29,7 +30,7 @@ class Watcher(Protocol):
     def __call__(self, episode: Episode) -> None: ...
 
 
-class Episode:
+class Episode(Uncopied):
     """One try at a task, from a settled start.
 
     A simulation that diverges, in the settling too, ends the episode: ``diverged`` and ``ended`` say so, and ``gait``

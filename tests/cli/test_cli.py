@@ -197,7 +197,7 @@ def test_a_table_goes_to_json_and_back(tips, tmp_path):
     save_table(tips, tmp_path / "tips.json")
     assert load_table(tmp_path / "tips.json") == tips
     (tmp_path / "bad.json").write_text('[{"pull": 1}]')
-    with pytest.raises(InputError, match="tips row 1.pull = 1 must be a table"):
+    with pytest.raises(InputError, match=r"tips row 1\.pull = 1 must be a table"):
         load_table(tmp_path / "bad.json")
 
 

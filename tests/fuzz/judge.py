@@ -2,11 +2,14 @@
 
 import shutil
 import traceback
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from hypothesis.strategies import SearchStrategy
+
 from tensegym.errors import LONGEST, TensegymError
-from tests.fuzz.environment import CALLS, Environment
+from tests.fuzz.called import CALLED
 from tests.fuzz.readers import READERS
 
 ALLOWED = (TensegymError, OSError)
@@ -21,32 +24,46 @@ class Foreign(AssertionError):
         self.kind = kind
 
 
-def trial(name: str, folder: Path):
+def trial(name: str, folder: Path) -> tuple[SearchStrategy[Any], Callable[[Any], bool]]:
     """A strategy of inputs and a function that judges one: True if accepted, False if refused, Foreign raised."""
-    if name == "environment":
-        environment = Environment()
+    if name in CALLED:
+        inputs, call, forget = CALLED[name](folder)
 
-        def play(call: Any) -> bool:
+        def play(given: Any) -> bool:
             try:
-                return judged(environment.call, call)
+                return judged(call, given, folder)
             except Foreign:
-                environment.close()
+                forget()
                 raise
 
-        return CALLS, play
+        return inputs, play
     reader = READERS[name]
     for neighbour in reader.neighbours:
         shutil.copy(neighbour, folder)
-    path = folder / f"input{reader.suffix}"
+    for beside, content in (reader.beside() if reader.beside else {}).items():
+        (folder / beside).write_bytes(content)
+    path = folder / reader.file
 
     def read(content: bytes) -> bool:
         path.write_bytes(content)
-        return judged(reader.read, path)
+        return judged(reader.read, path, folder)
 
     return reader.inputs(), read
 
 
-def judged(function: Any, argument: Any) -> bool:
+def judged(function: Any, argument: Any, folder: Path) -> bool:
+    """Whether it was accepted; nothing half written may be left in the folder either way."""
+    try:
+        return _accepted(function, argument)
+    finally:
+        half = [path for path in folder.rglob(".tensegym-*") if path.name != ".tensegym-lock"]
+        for path in half:
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+        if half:
+            raise Foreign(f"{half[0].name.split('-')[-1]} half written", AssertionError(str(half[0])))
+
+
+def _accepted(function: Any, argument: Any) -> bool:
     try:
         function(argument)
     except ALLOWED as error:
@@ -66,4 +83,4 @@ def where(error: BaseException) -> str:
     return f"{Path(last.filename).relative_to(PACKAGE) if own else last.filename}:{last.lineno}"
 
 
-NAMES = (*READERS, "environment")
+NAMES = (*READERS, *CALLED)

@@ -13,7 +13,7 @@ import tomli_w
 import yaml
 from hypothesis import strategies as st
 
-from tests.fuzz import mutants
+from tests.fuzz import folders, mutants
 
 ROOT = Path(__file__).parents[2]
 PRISM = """
@@ -30,7 +30,8 @@ class Reader(NamedTuple):
     """What reads a kind of file."""
 
     name: str
-    suffix: str
+    file: str
+    """Name of the damaged file."""
     read: Callable[[Path], Any]
     sources: Callable[[], list[bytes]]
     """Valid files."""
@@ -39,6 +40,8 @@ class Reader(NamedTuple):
     dump: Callable[[Any], bytes] | None = None
     neighbours: tuple[Path, ...] = ()
     """Files that a read file points at; they are copied beside it."""
+    beside: Callable[[], dict[str, bytes]] | None = None
+    """Other files of its folder, by name."""
 
     def inputs(self) -> st.SearchStrategy[bytes]:
         """Damaged files."""
@@ -230,21 +233,54 @@ def _pictures() -> list[bytes]:
     return found
 
 
+def _controller(path: Path) -> Any:
+    from tensegym.control.table import make_controller, with_defaults
+    from tensegym.errors import InputError
+    from tensegym.tables import read_toml
+
+    table = read_toml(path, "controller", InputError)
+    with_defaults(table)
+    return make_controller(table)
+
+
+def _controllers() -> list[bytes]:
+    cpg = {"version": 1, "gain": 1.5, "lags": [0.1, -0.2], "amplitudes": [0.5, 0.4], "frequency": 0.7}
+    walker = {"kind": "walker", "tips": "own", "depth": 0.9, "period": 0.2}
+    policies = [{"kind": "policy", "policy": "onboard", "period": 0.3}, {"policy": "onboard", "gain": 1.0}]
+    return [tomli_w.dumps(table).encode() for table in (cpg, walker, *policies, {"kind": "random", "period": 0.4})]
+
+
 READERS = {
     reader.name: reader
     for reader in (
-        Reader("design", ".toml", _design, _designs, from_toml, to_toml),
-        Reader("task", ".toml", _task, lambda: _files("tensegym/search/tasks/*.toml"), from_toml, to_toml),
-        Reader("training", ".yaml", _config, lambda: _files("train/configs/*.yaml"), yaml.safe_load, to_yaml),
-        Reader("hinge", ".toml", _hinge, _hinges, from_toml, to_toml),
-        Reader("flexures", ".toml", _flexures, lambda: _files("urdf/flexure_*.toml"), from_toml, to_toml,
+        Reader("design", "input.toml", _design, _designs, from_toml, to_toml),
+        Reader("task", "input.toml", _task, lambda: _files("tensegym/search/tasks/*.toml"), from_toml, to_toml),
+        Reader("training", "input.yaml", _config, lambda: _files("train/configs/*.yaml"), yaml.safe_load, to_yaml),
+        Reader("hinge", "input.toml", _hinge, _hinges, from_toml, to_toml),
+        Reader("flexures", "input.toml", _flexures, lambda: _files("urdf/flexure_*.toml"), from_toml, to_toml,
                tuple(sorted((ROOT / "urdf").glob("flexure_*.urdf")))),
-        Reader("urdf", ".urdf", _urdf, lambda: _files("urdf/*.urdf")),
-        Reader("joint", ".json", _joint, _joints, json.loads, to_json),
-        Reader("tips", ".json", _tips, _few_tips, json.loads, to_json),
-        Reader("commands", ".csv", _commands, _command_rows),
-        Reader("measured", ".csv", _measured, _measured_rows),
-        Reader("loads", ".csv", _loads, lambda: [b"Fx_N,Fy_N,Mz_Nmm\n0,0.5,10\n-0.5,0.2,-20\n0,0,0\n"]),
-        Reader("picture", ".png", _picture, _pictures),
+        Reader("urdf", "input.urdf", _urdf, lambda: _files("urdf/*.urdf")),
+        Reader("joint", "input.json", _joint, _joints, json.loads, to_json),
+        Reader("tips", "input.json", _tips, _few_tips, json.loads, to_json),
+        Reader("commands", "input.csv", _commands, _command_rows),
+        Reader("measured", "input.csv", _measured, _measured_rows),
+        Reader("loads", "input.csv", _loads, lambda: [b"Fx_N,Fy_N,Mz_Nmm\n0,0.5,10\n-0.5,0.2,-20\n0,0,0\n"]),
+        Reader("picture", "input.png", _picture, _pictures),
+        Reader("controller", "input.toml", _controller, _controllers, from_toml, to_toml),
+        Reader("policy", "policy.json", folders.read_policy_folder, lambda: [folders.policy()["policy.json"]],
+               json.loads, to_json, beside=folders.policy),
+        Reader("weights", "weights.npz", folders.read_policy_folder, lambda: [folders.policy()["weights.npz"]],
+               folders.from_npz, folders.to_npz, beside=folders.policy),
+        Reader("trained in", "config.yaml", folders.read_policy_folder,
+               lambda: [folders.policy()["config.yaml"], *_files("train/policies/*/config.yaml")],
+               yaml.safe_load, to_yaml, beside=folders.policy),
+        Reader("state", "state.json", folders.resume, lambda: [folders.training()["state.json"]], json.loads, to_json),
+        Reader("moments", "optimiser.npz", folders.resume, lambda: [folders.training()["optimiser.npz"]],
+               folders.from_npz, folders.to_npz),
+        Reader("curve", "curve.csv", folders.resume, lambda: [folders.CURVE.encode()]),
+        Reader("study", "study.db", folders.read_study, lambda: [folders.study()],
+               folders.from_sqlite, folders.to_sqlite),
+        Reader("storage", "storage.txt", folders.read_storage,
+               lambda: [b"", b"sqlite:///study.db", b"postgresql://a:***@b/c"]),
     )
 }  # fmt: skip
