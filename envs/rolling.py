@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any, ClassVar
 
 import gymnasium as gym
@@ -16,6 +17,7 @@ from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import as_design
 from tensegym.design.variation import parse_variation
 from tensegym.errors import DesignError, SimulationError
+from tensegym.robot.fallen import FALLEN, FLAT, has_fallen
 from tensegym.robot.rendering import draw_in_window, render
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.tables import as_whole, known, show
@@ -85,6 +87,9 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
     ``reset(options=...)``: face (index), heading [rad], direction [rad], and design, which puts another robot with as
     many nodes, cables and drives into the same environment.
 
+    A robot that has fallen flat when an episode begins, or lay so when it ended, is warned of (UserWarning), once a
+    design; `tensegym.standing_verdict` says beforehand.
+
     Version 0: first.
     """
 
@@ -135,6 +140,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         self.observation_space: spaces.Box = _box(self.observation)
         self.action_space: spaces.Box = spaces.Box(-1.0, 1.0, (len(self.robot.drives),), dtype=np.float32)
         self.episode: Episode | None = None
+        self._fallen: RobotDesign | None = None
         self._closed = False
 
     def reset(
@@ -152,6 +158,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
             super().reset(seed=seed)
         except gym.error.Error as error:
             raise DesignError(f"seed = {show(seed)}: {error}") from error
+        self._warn_if_fallen(FLAT)
         if self.episode and self.episode.diverged:  # what is left in the engine's caches may be no numbers either
             self._use(self.robot.design)
         design, redraw = options.pop("design", None), False
@@ -164,6 +171,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
             redraw = seed is not None or not self._episodes_left
             self._episodes_left = (self._episodes_per_design if redraw else self._episodes_left) - 1
         episode = self._begin(options, redraw)
+        self._warn_if_fallen(FALLEN)
         info = episode.start._asdict() | ({"redrawn": self._redrawn} if self._redrawn else {})
         if episode.faults:
             info["disturbed"] = self._factors | episode.faults.as_dict()
@@ -188,6 +196,14 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         raise SimulationError(f"no episode can begin: the robot {self.robot.design.name!r} diverged "
                               f"{self.episode.ended if self.episode else ''}; "
                               f"take a smaller time step than dt = {self.dt:g} s, or another design")  # fmt: skip
+
+    def _warn_if_fallen(self, left: float) -> None:
+        """Say once of a design that with it an episode began, or ended, flat on the ground."""
+        episode, design = self.episode, self.robot.design
+        if episode and not episode.diverged and design is not self._fallen and has_fallen(self.robot, left):
+            self._fallen = design
+            warnings.warn(f"robot {design.name!r} has fallen flat; tensegym.standing_verdict(design) says what would "
+                          "hold it", UserWarning, stacklevel=3)  # fmt: skip
 
     def step(self, action: NDArray[Any]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Command the drives and hold for a control period. Raises DesignError for what is no action, and

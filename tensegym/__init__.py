@@ -18,6 +18,7 @@ Robots:
     load_design       a design from a TOML file
     TensegrityRobot   a design in PyBullet: reset, command, step, and what can be read
     Terrain           rough ground
+    standing_verdict  whether a design stands, face by face, and the least pretension that holds it
     GaitMeter         measures a motion while a robot makes it
     GaitMetrics       what it measured: speed, tips, slip, energy, the energy audit
 
@@ -66,12 +67,14 @@ if TYPE_CHECKING:
     from tensegym.physics.terrain import Terrain
     from tensegym.robot.gait import GaitMeter, GaitMetrics
     from tensegym.robot.robot import TensegrityRobot
+    from tensegym.robot.standing import standing_verdict
     from tensegym.tasks import Task, as_task, evaluate, rollout
 
 __all__ = [
     "DesignError", "FlexibleRobot", "FlexureError", "GaitMeter", "GaitMetrics", "InputError", "RobotDesign",
     "SimulationError", "StructureError", "Task", "TensegrityRobot", "TensegymError", "Terrain", "as_task", "evaluate",
     "fit_joint", "load_design", "load_joint", "load_policy", "rollout",
+    "standing_verdict",
 ]  # fmt: skip
 
 _HOMES = {
@@ -84,6 +87,7 @@ _HOMES = {
     "physics.terrain": ("Terrain",),
     "robot.gait": ("GaitMeter", "GaitMetrics"),
     "robot.robot": ("TensegrityRobot",),
+    "robot.standing": ("standing_verdict",),
     "tasks": ("Task", "as_task", "evaluate", "rollout"),
 }
 

@@ -9,6 +9,7 @@ from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
+from tensegym.design.design_file import design_from_dict
 from tensegym.errors import InputError
 from tensegym.files import lock_folder, write_text
 from tensegym.report import Report, table
@@ -22,6 +23,7 @@ from tensegym.search.workers import Workers, check_workers, open_workers
 from tensegym.tables import in_file, read_text
 
 from .options import Count, Jobs, Seed
+from .standing import tell_unless_standing
 
 COMMANDS: dict[str, tuple[str, str]] = {
     "run": ("tensegym.cli.design:Run", "search for a design that makes a motion"),
@@ -88,6 +90,8 @@ class Run(_Search):
         with open_workers(self.workers, self.jobs, self.address) as pool, lock_folder(self.out):
             store = Store(self.out, problem, self.storage)
             write_text(self.out / "storage.txt", masked(self.storage or ""))
+            start = design_from_dict(problem.space.apply(problem.space.start)["design"])
+            tell_unless_standing(start, problem.task.engine)
             return self._go(problem, store, pool, self.budget, self.out)
 
 

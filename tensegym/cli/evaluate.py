@@ -21,6 +21,7 @@ from tensegym.tasks.rollout import rollout
 from tensegym.tasks.trials import Setup, check_setup, run_trials, summarise
 
 from .options import Count, Jobs, Within
+from .standing import tell_unless_standing
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,7 @@ class Evaluate:
             setup = replace(setup, task=setup.task.changed(disturb=disturb))
         check_setup(setup)  # a policy that does not fit fails here, before anything is written
         with lock_folder(self.out):
+            tell_unless_standing(setup.design, setup.task.engine)
             return self._evaluate(setup)
 
     def _evaluate(self, setup: Setup) -> Report:
@@ -113,4 +115,6 @@ def _text(summaries: dict[str, dict[str, Any]], measures: tuple[str, ...]) -> st
         shown = [[name, *("{median:.3g} [{least:.3g}, {most:.3g}]".format(**s["measures"][measure])
                           for measure in measures)] for name, s in summaries.items()]  # fmt: skip
         texts.append("median [least, most] of\n" + table(["controller", *measures], shown))
-    return "\n\n".join(texts)
+    fallen = [f"{name}: {s['fallen']} of {s['episodes']} episodes ended flat on the ground and make no way"
+              for name, s in summaries.items() if s["fallen"]]  # fmt: skip
+    return "\n\n".join([*texts, *fallen])

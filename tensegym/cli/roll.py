@@ -16,6 +16,7 @@ from tensegym.tasks.rollout import rollout
 
 from .evaluate import Evaluate
 from .options import Count
+from .standing import tell_unless_standing
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,7 @@ class Roll:
 
     def _watch(self) -> Report:
         setup = policy_setup(self.policy, engine=self.engine)
+        tell_unless_standing(setup.design, setup.task.engine)
         with setup.robot(gui=True) as robot:
             result = rollout(robot, make_controller(setup.controller), setup.task, FIRST_SEED, watcher=_Clock())
         gait = result.gait

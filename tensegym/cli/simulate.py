@@ -22,6 +22,7 @@ from tensegym.robot.robot import LARGEST_TIME_STEP, TensegrityRobot
 from tensegym.robot.start_poses import start_at
 
 from .options import Within
+from .standing import tell_unless_standing
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,7 @@ class Simulate:
         every = round(self.sample / self.dt)
         if every < 1 or not math.isclose(every * self.dt, self.sample, rel_tol=1e-6):
             raise InputError(f"sample = {self.sample:g} s must be a whole number of steps of dt = {self.dt:g} s")
+        standing = tell_unless_standing(design, self.engine).as_dict() if self.ground else None
         with TensegrityRobot(design, dt=self.dt, ground=self.ground, engine=self.engine) as robot:
             start_at(robot, self.start or robot.faces.names()[0], self.heading)
             commands = Playback(times, angles, self.dt)
@@ -78,7 +80,8 @@ class Simulate:
             writer = csv.writer(file)
             writer.writerow(header)
             writer.writerows([[f"{v:.9g}" for v in row] for row in rows])
-        data = {"out": str(self.out), "rows": len(rows), "columns": len(header), **gait.as_dict()}
+        data = {"out": str(self.out), "rows": len(rows), "columns": len(header), **gait.as_dict(),
+                "standing": standing}  # fmt: skip
         text = table(["out", "rows", "columns", "path m", "tips", "slip share", "energy J", "audit excess"],
                      [[str(self.out), len(rows), len(header), gait.path, gait.tips, gait.slip_share, gait.energy,
                        gait.audit_excess]])  # fmt: skip

@@ -16,7 +16,7 @@ from tensegym.errors import InputError, SimulationError
 from tensegym.plotting import require_matplotlib
 from tensegym.report import Report, table
 from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityRobot
-from tensegym.robot.standing import standing_verdict
+from tensegym.robot.standing import Verdict, standing_verdict
 from tensegym.structure.faces import face_by_nodes
 
 from .figures import PERIOD, draw_drives, draw_storyboard, record_step
@@ -59,7 +59,7 @@ class Step:
             raise InputError(f"--out {self.out} is a file; give a folder")
         require_matplotlib()
         verdict = standing_verdict(design, self.engine)
-        if all(face.fell for face in verdict.faces):
+        if verdict.falls_everywhere:
             raise SimulationError(f"{design.name} {verdict.text}".replace("\n", "; "))
         with TensegrityRobot(design, dt=self.dt, engine=self.engine) as robot:
             count = len(robot.drives)
@@ -67,7 +67,7 @@ class Step:
                 raise InputError(f"drives = {self.drives} must be different numbers from 1 to {count}")
             faces = [face_by_nodes(robot.faces, self.face)] if self.face else range(len(robot.faces.triangles))
             if self.all_faces:
-                return self._table(robot)
+                return self._table(robot, verdict)
             tip = self._find(robot, faces)
             self.out.mkdir(parents=True, exist_ok=True)
             record = record_step(robot, tip)
@@ -97,7 +97,7 @@ class Step:
         where = self.face or "any face"
         raise SimulationError(f"no {what} tips the robot from {where} at depth {self.depth:g}")
 
-    def _table(self, robot: TensegrityRobot) -> Report:
+    def _table(self, robot: TensegrityRobot, verdict: Verdict) -> Report:
         from tqdm import tqdm
 
         with tqdm(desc="pulls", unit="pull", file=sys.stderr) as bar:
@@ -118,5 +118,7 @@ class Step:
             rows.append([name, kind, f"{len(moved)} of {len(here)}", " ".join(targets)])
         total = sum(t.tipped for t in tips)
         text = table(["face", "kind", "pulls that tip", "onto"], rows) + f"\n{total} of {len(tips)} pulls tip the robot"
-        return Report(text, {"out": str(self.out / "tips.json"), "pulls": len(tips), "tipped": total,
-                             "peak_tension_N": max(t.peak_tension for t in tips)})  # fmt: skip
+        text += f"\n{robot.design.name} {verdict.text}"
+        data = {"out": str(self.out / "tips.json"), "pulls": len(tips), "tipped": total,
+                "peak_tension_N": max(t.peak_tension for t in tips), "standing": verdict.as_dict()}  # fmt: skip
+        return Report(text, data)

@@ -22,6 +22,7 @@ from tensegym.train.start_policy import check_start
 from tensegym.train.state import TrainState, write_state
 
 from .options import Count, Seed
+from .standing import tell_unless_standing
 
 _BEGUN = ("versions.json", CURVE, "config.yaml")  # all there is of a run that was killed as it began
 
@@ -88,9 +89,12 @@ def _check(config: TrainConfig) -> None:
     """A bad env argument, or a start that does not fit it, fails here, before anything is written."""
     probe = make_env(config)
     spaces = probe.observation_space.shape, probe.action_space.shape
+    robot = probe.get_wrapper_attr("robot")
+    design, engine = robot.design, robot.engine
     probe.close()
     if config.start is not None:
         check_start(config, *spaces)
+    tell_unless_standing(design, engine)
 
 
 def _write_config(config: TrainConfig, out: Path) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from tensegym.design.design import RobotDesign
 from tensegym.robot.robot import TensegrityRobot
-from tensegym.robot.standing import resting_faces
+from tensegym.robot.settling import resting_faces
 
 from .part import ENGINES, Part
 
@@ -19,7 +19,7 @@ def settling(design: RobotDesign, dt: float) -> Part:
     heights, sunk, spread = {}, {}, {}
     for engine in ENGINES:
         with TensegrityRobot(design, dt=dt, engine=engine) as robot:
-            faces = list(resting_faces(robot))
+            faces = resting_faces(robot)
             names = [robot.faces.names()[face] for face in faces]
             heights[engine], sunk[engine], *sides = np.array([_settle(robot, face) for face in faces]).T
             spread[engine] = np.array(sides)

@@ -10,8 +10,8 @@ import numpy as np
 
 from tensegym.arrays import FloatArray
 from tensegym.errors import InputError
+from tensegym.robot.fallen import has_fallen
 from tensegym.robot.robot import TensegrityRobot
-from tensegym.robot.standing import has_fallen
 from tensegym.structure.faces import supporting_face
 from tensegym.tables import Checked, bounded, noted
 
@@ -91,7 +91,9 @@ def run_pull(
             watch(robot)
     dx, dy = (robot.centre_of_mass_in_world() - start)[:2]
     c, s = np.cos(angle), np.sin(angle)
-    end_face = start_face if has_fallen(robot) else current_face(robot)  # lying flat is no step
+    end_face, planes = current_face(robot), robot.faces.planes
+    if has_fallen(robot) or planes[end_face] == planes[start_face]:  # lying flat is no step
+        end_face = start_face
     turn = face_direction(robot, end_face, robot.node_positions_in_world()) - angle
     return Tip(pull, start_face, end_face, (float(c * dx + s * dy), float(c * dy - s * dx)), peak,
                float(np.remainder(turn + np.pi, 2 * np.pi) - np.pi))  # fmt: skip

@@ -22,7 +22,7 @@ class GaitMetrics:
 
     speed: displacement along the wanted direction, summed over its changes, over time [m/s]; speed_lps the same in rod
     lengths a second.
-    path: length of the way [m]. tips: changes of the hull triangle under the centre of mass.
+    path: length of the way [m]. tips: changes of the face under the centre of mass.
     slip_share: path of the grounded feet's centres, averaged over the grounded feet, over the path of the centre of
     mass: 0 for pure rolling, 1 for a body that skates. slip_share_sum: the same with the feet's paths summed.
     energy: electrical, what the drives draw [J]. cost_of_transport: energy / (m g displacement along), inf if <= 0.
@@ -89,6 +89,7 @@ class GaitMeter:
         self._start_totals = robot.totals()
         self._start_energy = robot.energies().total
         self._excess = 0.0
+        self._planes = robot.faces.planes
         self.tips = 0
         self.face = self._face(robot.nodes_in_world()[0], self._start)
 
@@ -100,7 +101,7 @@ class GaitMeter:
         robot = self.robot
         nodes = robot.node_positions_in_world() if nodes is None else nodes
         face = self._face(nodes, robot.centre_of_mass_in_world())
-        self.tips += face != self.face
+        self.tips += bool(self._planes[face] != self._planes[self.face])
         self.face = face
         allowed = self._start_energy + robot.totals().drive_work - self._start_totals.drive_work
         total = robot.energies(velocities).total

@@ -39,7 +39,7 @@ def aggregate(episodes: Sequence[Mapping[str, float]]) -> dict[str, float]:
     """One set of metrics from those of several episodes: means, but the largest audit excess.
 
     The cost of transport is the energy of all over the weight times the way of all, at most WORST_COST. An episode
-    that diverged or broke the audit (``sound`` 0) counts as no way at all.
+    that diverged, ended flat on the ground or broke the audit (``sound`` 0) counts as no way at all.
     """
     count = len(episodes)
     metrics = {name: math.fsum(e[name] for e in episodes) / count for name in episodes[0]}

@@ -17,6 +17,7 @@ from tensegym.arrays import FloatArray
 from tensegym.design.design_file import design_from_dict, save_design
 from tensegym.design.urdf_writer import urdf_files
 from tensegym.files import VERSION, replace_path, write_text
+from tensegym.robot.standing import standing_verdict
 
 from .confirm import FIRST_SEED, TIME_STEP, Confirmed, summary
 from .figures import draw_best_gait, draw_importance, draw_pareto, draw_progress
@@ -106,9 +107,11 @@ def write_report(
         f"{who}, {1e3 * dt:g} ms": {"goal_metric_mean": float(np.mean([row[goal] for row in rows]))} | summary(rows)
         for (who, dt), rows in confirmed.rows.items()
     }
+    verdict = standing_verdict(design, problem.task.engine)
     met = problem.task.goal.violation({k: float(np.mean([r[k] for r in found])) for k in found[0]}) <= 0
     data = {"folder": str(folder), "goal": str(problem.task.goal), "goal_met": met, "trial": confirmed.number,
             "trials": len(finished), "seconds": store.seconds(), "confirmed": columns, "importance": shares,
+            "standing": verdict.as_dict(), "stands": verdict.text,
             "best_so_far": {name: _last_best(c, objectives[0].maximise) for name, c in curves.items()}}  # fmt: skip
     write_text(folder / "report.md", "\n".join(_lines(problem, store, values, data, pictures)) + "\n")
     return data
@@ -134,6 +137,8 @@ def _lines(problem: Problem, store: Store, values: dict[str, Any], data: dict[st
     if len(data["best_so_far"]) > 1:
         yield from _table(["search", f"best {settings.objectives[0]}, as searched"], list(data["best_so_far"].items()))
         yield ""
+    yield from (f"The robot found {line}." for line in data["stands"].splitlines())
+    yield ""
     yield "## Where it began and what was found"
     yield ""
     scalars = [d for d in problem.space.dimensions if d.entry is None]

@@ -14,6 +14,8 @@ from tensegym.errors import StructureError
 
 from .structure import Structure
 
+LEVEL = 1e-5  # of the hull's size, and of the cosine between normals: triangles no farther apart are one face
+
 
 @dataclass(frozen=True)
 class Faces:
@@ -21,12 +23,14 @@ class Faces:
 
     triangles (f, 3): node indices, smallest first, counter-clockwise seen from outside. normals (f, 3): unit, outward.
     neighbours (f, 3): the face across the edge from node i to node i + 1. closed (f,): all three edges are cables.
+    planes (f,): the first of the triangles that make one level face with this one, as the halves of a square do.
     """
 
     triangles: IntArray
     normals: FloatArray
     neighbours: IntArray
     closed: np.ndarray
+    planes: IntArray
 
     def names(self) -> list[str]:
         """Node numbers from 1, as in 3-5-12, ascending."""
@@ -55,7 +59,14 @@ def hull_faces(structure: Structure) -> Faces:
     neighbours = [[across[t[(i + 1) % 3], t[i]] for i in range(3)] for t in triangles]
     cables = {frozenset(c) for c in structure.cables.tolist()}
     closed = [all(frozenset((t[i], t[(i + 1) % 3])) in cables for i in range(3)) for t in triangles]
-    return Faces(array, normals, np.array(neighbours), np.array(closed))
+    return Faces(array, normals, np.array(neighbours), np.array(closed), _planes(normals, nodes[array[:, 0]]))
+
+
+def _planes(normals: FloatArray, corners: FloatArray) -> IntArray:
+    """(f,) the first face with the same normal, and as far out, as each."""
+    out, size = (normals * corners).sum(axis=1), np.linalg.norm(np.ptp(corners, axis=0))
+    same = (normals @ normals.T > 1 - LEVEL) & (np.abs(out[:, None] - out) < LEVEL * size)
+    return np.asarray(same.argmax(axis=1))
 
 
 def face_by_nodes(faces: Faces, name: str) -> int:

@@ -9,6 +9,7 @@ import numpy as np
 
 from tensegym.control.controller import Controller
 from tensegym.errors import DesignError
+from tensegym.robot.fallen import FLAT, has_fallen
 from tensegym.robot.gait import GaitMetrics
 from tensegym.robot.robot import TensegrityRobot
 
@@ -31,15 +32,18 @@ class Result(NamedTuple):
     """drive_load, mass [kg], weight [N] and what the task measures itself."""
     ended: str
     diverged: bool
+    fallen: bool = False
+    """Whether it lay flat at the end, with a quarter of its volume at rest or less."""
 
     @property
     def sound(self) -> bool:
-        """Whether it can be believed: it has not diverged, and keeps the energy audit."""
-        return not self.diverged and self.gait.audit_passed
+        """Whether what it did counts: it has not diverged or fallen flat, and keeps the energy audit."""
+        return not (self.diverged or self.fallen) and self.gait.audit_passed
 
     def row(self) -> dict[str, Any]:
         """Plain JSON types: how it began and ended, and the gait as measured."""
-        ends = {"seed": self.seed, "face": self.start.face, "terminated": self.diverged, "ended": self.ended}
+        ends = {"seed": self.seed, "face": self.start.face, "terminated": self.diverged, "ended": self.ended,
+                "fallen": self.fallen}  # fmt: skip
         return ends | self.gait.as_dict()
 
     def scores(self) -> dict[str, float]:
@@ -104,5 +108,7 @@ def _result(episode: Episode, seed: int) -> Result:
     design = episode.robot.design
     measures = {"mass": design.mass, "weight": design.mass * design.gravity, "drive_load": episode.drives.rms_current}
     task = episode.task
-    measures |= task.measures(episode) if episode.sound else {n: task.WORST.get(n, 0.0) for n in task.MEASURES}
-    return Result(seed, episode.start, episode.gait, measures, str(episode.ended), episode.diverged)
+    fallen = not episode.diverged and has_fallen(episode.robot, FLAT)
+    sound = episode.sound and not fallen
+    measures |= task.measures(episode) if sound else {n: task.WORST.get(n, 0.0) for n in task.MEASURES}
+    return Result(seed, episode.start, episode.gait, measures, str(episode.ended), episode.diverged, fallen)

@@ -115,6 +115,7 @@ def iterate(setup: Setup, controller: Controller, seeds: Sequence[int]) -> Gener
 def summarise(results: Sequence[Result]) -> dict[str, Any]:
     """Median, mean with its 95 % interval (normal; None of one trial), and the counts a gait is judged by.
 
+    The way of a trial that diverged, fell flat or broke the energy audit does not count: its speed is taken as 0.
     The way of a trial that diverged or broke the energy audit does not count: its speed, and what the task measures, is
     taken as 0, or the worst.
     """
@@ -141,6 +142,7 @@ def summarise(results: Sequence[Result]) -> dict[str, Any]:
         "terminated": sum(result.diverged for result in results),
         "measures": {name: _spread([result.measures[name] for result in results])
                      for name in results[0].measures},
+        "fallen": sum(result.fallen for result in results),
     }
 
 

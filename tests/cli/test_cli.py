@@ -337,6 +337,24 @@ def test_simulate_takes_another_structure(cli, tmp_path):
     assert rows[:, header.index("stiff_tension_2_6_N")].max() < 1  # not driven
 
 
+def test_no_command_uses_a_robot_that_falls_without_a_word(cli, tmp_path):
+    falls = Path(__file__).parents[1] / "design" / "cases" / "prism4_sags.toml"
+    commands = commands_csv(tmp_path / "in.csv", [(0.0, *[0.0] * 4), (0.1, *[0.0] * 4)],
+                            "time_s," + ",".join(f"drive_{d}_rad" for d in range(1, 5)))  # fmt: skip
+    words = ("'quad' falls flat", "12 of 12 faces", "no pretension up to", "form finding moved")
+    status, text, told = cli("simulate", "--commands", commands, "--out", tmp_path / "out.csv", "--design", falls,
+                             "--json")  # fmt: skip
+    assert status == 0
+    assert told.count("\n") == 1
+    assert all(word in told for word in words)
+    assert json.loads(text)["standing"]["verdict"] == "falls"
+    status, text, told = cli("modes", "--design", falls, "--json")
+    assert (status, told) == (0, "")
+    assert json.loads(text)["standing"]["verdict"] == "falls"
+    assert_refused(cli("step", "--design", falls, "--out", tmp_path / "step"), "falls flat", "12 of 12 faces")
+    assert not (tmp_path / "step").exists()
+
+
 def test_simulate_takes_the_papers_robot_in_its_pose(cli, tmp_path):
     out = tmp_path / "out.csv"
     status, _, _ = cli("simulate", "--commands", commands_csv(tmp_path / "in.csv"), "--out", out, "--design", "paper",

@@ -2,6 +2,7 @@
 
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from tensegym.control.tipping import Pull, run_pull, tip_from
 from tensegym.design.design import RobotDesign
+from tensegym.design.design_file import load_design
 from tensegym.robot.gait import AUDIT_TOLERANCE, GaitMeter, GaitMetrics
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.structure.faces import resting_rotation
@@ -178,3 +180,14 @@ def test_plain_types_for_json_with_none_for_infinite():
     assert data["cost_of_transport"] is None
     assert data["audit_passed"] is False
     assert data["tips"] == 2
+
+
+def test_a_robot_at_rest_on_a_square_does_not_tip():
+    """The foot of its centre of mass wanders over the diagonal between the two triangles of the square."""
+    with TensegrityRobot(load_design(Path(__file__).parents[1] / "design" / "cases" / "tall_4prism.toml")) as robot:
+        robot.reset(robot.faces.names().index("1-2-4"))
+        meter = GaitMeter(robot, X)
+        for _ in range(50):
+            robot.step(20)
+            meter.update()
+        assert meter.tips == 0

@@ -55,3 +55,14 @@ def test_flat_structures_have_no_faces():
     flat = Structure(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0.0]]), [(0, 1), (2, 3)], [(0, 2)], [])
     with pytest.raises(StructureError, match="no volume"):
         hull_faces(flat)
+
+
+def test_the_halves_of_a_square_are_one_level_face():
+    cube = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
+    rods = np.array([[0, 7], [1, 6], [2, 5], [3, 4]])
+    faces = hull_faces(Structure(cube, rods, np.array([[0, 1]]), np.zeros((0, 2), dtype=int)))
+    assert len(faces.triangles) == 12
+    for plane in set(faces.planes.tolist()):
+        assert (faces.planes == plane).sum() == 2
+        assert faces.normals[faces.planes == plane] == pytest.approx(np.tile(faces.normals[plane], (2, 1)))
+    assert FACES.planes.tolist() == list(range(20))
