@@ -18,20 +18,21 @@ HERE = Path(__file__).parent
 PLACES = {  # of each shelf: column, row from below, what stands there
     "structure": (0.0, 1.0, "a tensegrity at rest"),
     "flexure": (1.2, 1.0, "hinges, FEM, joint models"),
-    "engine": (1.2, 3.5, "what a robot needs of one"),
-    "bullet": (1.9, 4.2, "PyBullet"),
-    "mujoco": (2.6, 4.2, "MuJoCo"),
     "design": (0.5, 2.0, "a robot as data"),
-    "flexible": (3.1, 3.8, "flexures in any URDF"),
     "physics": (0.5, 3.0, "the compiled substep"),
-    "robot": (1.2, 4.0, "a design in the engine"),
-    "control": (0.6, 5.0, "what moves a robot"),
-    "tasks": (1.4, 6.0, "what it is to do"),
-    "envs": (0.9, 7.0, "Gymnasium"),
-    "train": (0.5, 8.0, "PPO"),
-    "search": (2.0, 7.5, "over designs"),
-    "validation": (2.4, 5.2, "closed forms"),
-    "cli": (3.1, 9.0, "commands"),
+    "engine": (1.4, 3.8, "what a robot needs of one"),
+    "bullet": (1.9, 4.7, "PyBullet"),
+    "mujoco": (3.1, 4.7, "MuJoCo"),
+    "flexible": (2.6, 5.8, "flexures in any URDF"),
+    "robot": (1.2, 5.6, "a design in an engine"),
+    "control": (0.6, 6.5, "what moves a robot"),
+    "tasks": (1.4, 7.4, "what it is to do"),
+    "envs": (0.5, 8.3, "Gymnasium"),
+    "train": (0.2, 9.3, "PPO"),
+    "search": (1.7, 8.8, "over designs"),
+    "compare": (2.9, 8.5, "engines side by side"),
+    "validation": (2.5, 7.0, "closed forms"),
+    "cli": (2.6, 10.2, "commands"),
 }
 TOOLS = ("errors", "arrays", "files", "compiled", "tables", "report", "plotting", "processes")
 WALKS = {  # the shelves that a walk enters, in order, as docs/architecture.md tells them
@@ -43,12 +44,12 @@ WALKS = {  # the shelves that a walk enters, in order, as docs/architecture.md t
 ACTION = (
     ("action (6), -1 to 1", "envs/rolling.py"),
     ("spool angles (6) [rad]", "tasks/episode.py"),
-    ("poses (6, 7) from the engine", "bullet/"),
+    ("poses (6, 7) from the engine", "bullet/ or mujoco/"),
     ("lengths, rates of change", "physics/geometry.py"),
     ("tensions", "physics/cable_law.py"),
     ("a force and a moment a body", "engine/leapfrog.py"),
     ("drives wind their cables", "physics/drives.py"),
-    ("into the engine, one time step", "bullet/"),
+    ("into the engine, one time step", "bullet/ or mujoco/"),
     ("reading: nodes, centre, energies", "robot/reading.py"),
     ("observation, reward terms, info", "envs/rolling.py"),
 )
@@ -97,9 +98,9 @@ def draw_shelves(axis: Any) -> None:
             x, y = x - 0.42 + 0.28 * row, y + HIGH / 2
             axis.plot(x, y, "o", color=colour, markersize=13, zorder=5)
             axis.text(x, y - 0.01, str(step), color="white", ha="center", va="center", fontsize=8, zorder=6)
-        axis.plot(-0.42, 9.45 - 0.27 * row, "o", color=colour, markersize=13)
-        axis.text(-0.27, 9.45 - 0.27 * row, title, va="center", fontsize=9)
-    axis.set(xlim=(-0.6, 3.7), ylim=(-0.4, 9.6), title="Shelves: an arrow is an import, a number is a step of a walk")
+        axis.plot(-0.42, 10.7 - 0.27 * row, "o", color=colour, markersize=13)
+        axis.text(-0.27, 10.7 - 0.27 * row, title, va="center", fontsize=9)
+    axis.set(xlim=(-0.6, 3.7), ylim=(-0.4, 10.9), title="Shelves: an arrow is an import, a number is a step of a walk")
 
 
 def draw_action(axis: Any) -> None:
@@ -116,7 +117,7 @@ def draw_action(axis: Any) -> None:
 
 
 def main() -> None:
-    figure, (shelves, action) = new_figure(1, 2, size=(12, 10.5), width_ratios=(4.3, 2.5))
+    figure, (shelves, action) = new_figure(1, 2, size=(12, 11.5), width_ratios=(4.3, 2.5))
     draw_shelves(shelves)
     draw_action(action)
     for axis in (shelves, action):

@@ -1,4 +1,4 @@
-"""Tensegrity robots and flexible joints on PyBullet.
+"""Tensegrity robots and flexible joints on PyBullet, and on MuJoCo beside it.
 
     import tensegym
 
@@ -16,7 +16,7 @@ Environments, registered with Gymnasium by this import:
 Robots:
     RobotDesign       what a robot is: structure, rods, cables, drives, payload; validated, frozen
     load_design       a design from a TOML file
-    TensegrityRobot   a design in PyBullet: reset, command, step, and what can be read
+    TensegrityRobot   a design in PyBullet or MuJoCo: reset, command, step, and what can be read
     Terrain           rough ground
     standing_verdict  whether a design stands, face by face, and the least pretension that holds it
     GaitMeter         measures a motion while a robot makes it

@@ -6,8 +6,7 @@ What `World.run` does in turn in Python, and to the same bits.
 from __future__ import annotations
 
 from tensegym.compiled import kernel
-from tensegym.engine.leapfrog import leapfrog
-from tensegym.physics.substep import substep
+from tensegym.engine.leapfrog import engine_substep
 from tensegym.physics.vectors import ALLOCATING
 
 from .c_interface import client_handle, push_and_step, read_states
@@ -26,7 +25,6 @@ def run(count, engine, model, ground, state, out, dt, implicit):
     for done in range(count):
         if not read_states(handle, engine.window, engine.body_ids, engine.two_link_rows, state.poses, state.angles):
             return done
-        substep(model, ground, state, out, dt, implicit)
-        leapfrog(model, state, out, dt)
+        engine_substep(model, ground, state, out, dt, implicit)
         push_and_step(handle, engine.body_ids, engine.two_link_rows, state.poses, out.wrenches)
     return count

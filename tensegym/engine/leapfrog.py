@@ -9,6 +9,7 @@ mends it stands here, once.
 from __future__ import annotations
 
 from tensegym.compiled import kernel
+from tensegym.physics.substep import substep
 from tensegym.physics.vectors import ALLOCATING
 
 from .rod_rotation import turn_rods
@@ -22,3 +23,10 @@ def leapfrog(model, state, out, dt):
     over to the first one."""
     turn_rods(model, dt, out)
     step_split_rods(model, state, dt, out)
+
+
+@kernel(**ALLOCATING)
+def engine_substep(model, ground, state, out, dt, implicit):
+    """`substep`, its out.wrenches made those for the engine."""
+    substep(model, ground, state, out, dt, implicit)
+    leapfrog(model, state, out, dt)

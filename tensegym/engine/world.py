@@ -12,10 +12,9 @@ from numpy.typing import ArrayLike
 from tensegym.arrays import FloatArray
 from tensegym.physics.model import Model, Out
 from tensegym.physics.model import State as Arrays
-from tensegym.physics.substep import substep
 from tensegym.physics.terrain import Ground
 
-from .leapfrog import leapfrog
+from .leapfrog import engine_substep
 from .scene import Scene
 from .uncopied import Uncopied
 
@@ -112,8 +111,7 @@ class World(Uncopied, ABC):
         `angles`. Engines that can do the same in compiled code do, to the same bits."""
         for _ in range(count):
             self.read()
-            substep(model, ground, state, out, dt, implicit)
-            leapfrog(model, state, out, dt)
+            engine_substep(model, ground, state, out, dt, implicit)
             self.step(out.wrenches)
 
     # -- state --------------------------------------------------------------------------------------------------------

@@ -14,8 +14,7 @@ import mujoco
 from numba import types
 
 from tensegym.compiled import kernel
-from tensegym.engine.leapfrog import leapfrog
-from tensegym.physics.substep import substep
+from tensegym.engine.leapfrog import engine_substep
 from tensegym.physics.vectors import ALLOCATING, KERNEL
 
 _step = types.ExternalFunction("mj_step", types.void(types.intp, types.intp))
@@ -60,8 +59,7 @@ def run(count, engine, model, ground, state, out, dt, implicit):
     """Take ``count`` time steps; engine: a world.EngineAccess, the rest as for `substep`."""
     for _ in range(count):
         read_poses(engine.places, engine.pins, engine.coordinates, state.poses, state.angles)
-        substep(model, ground, state, out, dt, implicit)
-        leapfrog(model, state, out, dt)
+        engine_substep(model, ground, state, out, dt, implicit)
         write_wrenches(engine.links, out.wrenches, engine.applied)
         _step(engine.model, engine.data)
 

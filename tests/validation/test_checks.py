@@ -102,12 +102,12 @@ def test_a_weaker_drive_is_caught(monkeypatch):
 
 def test_a_force_without_its_reaction_is_caught(monkeypatch):
     """Leave a thousandth of one rod's force out: momentum is no longer kept."""
-    right = world.substep
+    right = world.engine_substep
 
     def lame(*args):
         right(*args)
         args[3].wrenches[0, :3] *= 0.999
 
-    monkeypatch.setattr(world, "substep", lame)
+    monkeypatch.setattr(world, "engine_substep", lame)
     monkeypatch.setattr(flight, "TensegrityRobot", partial(TensegrityRobot, compiled=False))
     assert failing(flight) == {"I1"}
