@@ -48,13 +48,19 @@ _add_force = types.ExternalFunction("b3ApplyExternalForce", types.void(_word, _i
 _add_torque = types.ExternalFunction("b3ApplyExternalTorque", types.void(_word, _int, _int, _word, _int))
 
 
-def known_version() -> bool:
-    """Whether the installed PyBullet is one whose interface is known here."""
-    found = []
+def installed() -> dict[str, str]:
+    """Version of the PyBullet that is installed, by its distribution: one, unless both were by hand."""
+    found = {}
     for name in KNOWN_VERSIONS:
         with suppress(PackageNotFoundError):
-            found.append(version(name) in KNOWN_VERSIONS[name])
-    return bool(found) and all(found)
+            found[name] = version(name)
+    return found
+
+
+def known_version() -> bool:
+    """Whether the installed PyBullet is one whose interface is known here."""
+    found = installed()
+    return bool(found) and all(number in KNOWN_VERSIONS[name] for name, number in found.items())
 
 
 def known_names() -> str:

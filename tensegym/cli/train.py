@@ -10,6 +10,7 @@ from pathlib import Path
 
 import yaml
 
+from tensegym.bullet.c_interface import installed
 from tensegym.errors import InputError
 from tensegym.files import VERSION, is_empty, lock_folder, write_json, write_text
 from tensegym.report import Report, table
@@ -102,7 +103,7 @@ def _write_config(config: TrainConfig, out: Path) -> None:
 
 
 def _versions() -> dict[str, str]:
-    names = ("tensegym", "pybullet", "numpy", "numba", "gymnasium", "stable-baselines3", "torch")
+    names = ("tensegym", *installed(), "numpy", "numba", "gymnasium", "stable-baselines3", "torch")
     found = {"python": platform.python_version(), **{n: version(n) for n in names}}
     commit = subprocess.run(["git", "-C", Path(__file__).parent, "rev-parse", "HEAD"], capture_output=True, text=True)
     return found | {"commit": commit.stdout.strip() or "not a git checkout"}

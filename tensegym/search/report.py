@@ -14,6 +14,7 @@ import optuna
 import tomli_w
 
 from tensegym.arrays import FloatArray
+from tensegym.bullet.c_interface import installed
 from tensegym.design.design_file import design_from_dict, save_design
 from tensegym.design.urdf_writer import urdf_files
 from tensegym.files import VERSION, replace_path, write_text
@@ -160,7 +161,7 @@ def _lines(problem: Problem, store: Store, values: dict[str, Any], data: dict[st
     yield ""
     yield from ("    " + line for line in store.problem_text.splitlines())
     yield ""
-    names = ("tensegym", "pybullet", "optuna", "numpy", "numba")
+    names = ("tensegym", *installed(), "optuna", "numpy", "numba")
     yield f"Python {platform.python_version()}, " + ", ".join(f"{name} {version(name)}" for name in names) + "."
 
 

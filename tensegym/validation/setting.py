@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import platform
-from contextlib import suppress
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import version
 
 from tensegym.bullet import c_interface
 
@@ -13,9 +12,7 @@ def setting(engine: str = "pybullet") -> str:
     """One line on this process, as "Python 3.13.0, pybullet-arm64 3.2.8, compiled substeps"."""
     if engine != "pybullet":
         return f"Python {platform.python_version()}, {engine} {version(engine)}"
-    for name in c_interface.KNOWN_VERSIONS:
-        with suppress(PackageNotFoundError):
-            engine = f"{name} {version(name)}"
+    engine = " ".join(f"{name} {number}" for name, number in c_interface.installed().items()) or "PyBullet"
     loop = "compiled substeps" if c_interface.AVAILABLE else (
         f"substeps by Python's calls, to the same bits in more time (compiled ones know {c_interface.known_names()})")
     return f"Python {platform.python_version()}, {engine}, {loop}"
