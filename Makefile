@@ -6,7 +6,7 @@ STAMP := $(VENV)/.ready
 export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 
-.PHONY: help setup test fuzz lint demo train bench clean
+.PHONY: help setup test fuzz lint demo train bench validate clean
 
 help:
 	@echo "make demo   roll the shipped policy: demo/metrics.json, gait.png, roll.mp4"
@@ -14,6 +14,7 @@ help:
 	@echo "make fuzz   20,000 damaged inputs for every reader of a file, and for the environment: a quarter of an hour"
 	@echo "make lint   ruff and mypy"
 	@echo "make train  train the rolling policy from scratch: runs/rolling-s0"
+	@echo "make validate  docs/validation.md with its figures: half an hour on two cores, and goes on where it was stopped"
 	@echo "make bench  measured ratios: substep, environment, start-up beside their peers, flexure models against their FEM"
 
 setup: $(STAMP)
@@ -46,6 +47,9 @@ train: $(STAMP)
 bench: $(STAMP)
 	$(BIN)/python benchmarks/ratios.py --out benchmarks/results/ratios.json
 	$(BIN)/python benchmarks/flexure.py
+
+validate: $(STAMP)
+	$(BIN)/tensegym validate --page docs
 
 clean:
 	rm -rf $(VENV) build *.egg-info demo runs

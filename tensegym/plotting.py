@@ -7,6 +7,9 @@ from typing import Any, Literal
 
 from tensegym.files import replace_path
 
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
+"""Told apart by the colour-blind too: Okabe and Ito 2008."""
+
 
 def require_matplotlib() -> None:
     """Raise ModuleNotFoundError now, before a command has worked or written anything, where nothing can be drawn."""
