@@ -20,10 +20,10 @@ def log_uniform(rng: Generator, low: float, high: float) -> float:
 
 
 def cables_and_masses(rng: Generator) -> Table:
-    """Tensions over a factor of 60, stiffnesses over 30, masses of rods over 40."""
+    """Tensions over a factor of 60, stiffnesses over 30, masses of rods' ends over 100."""
     return {
         "elastic_cable": {"pretension": log_uniform(rng, 1, 60), "stiffness": log_uniform(rng, 100, 3000)},
-        "passive_rod": {"tube_mass": log_uniform(rng, 0.01, 0.1), "end_mass": log_uniform(rng, 0.01, 0.4)},
+        "passive_rod": {"tube_mass": log_uniform(rng, 0.01, 0.1), "end_mass": log_uniform(rng, 0.01, 1.0)},
     }
 
 

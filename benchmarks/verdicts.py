@@ -55,7 +55,7 @@ from tensegym.robot.robot import TensegrityRobot
 from tensegym.robot.standing import SAGS, Verdict, standing_verdict
 from tensegym.structure.faces import face_by_nodes, hull_faces
 
-SECONDS = 3.0
+SECONDS, BREATH, LOOKS = 3.0, 1.0, 20  # s, s, times: displacements are means over the last second
 WAYS: dict[str, tuple[float, Literal["auto", "explicit"]]] = {"1 ms": (1e-3, "auto"), "0.5 ms": (5e-4, "explicit")}
 JOGGLE = 1e-3  # rod lengths, of the nodes of a flat figure
 PUSH = 0.02  # m/s and, over half a rod, rad/s: of the random velocities in free flight
@@ -127,11 +127,11 @@ def displaced(rest: FloatArray, nodes: FloatArray) -> float:
     return float(np.linalg.norm(now @ turn - goal, axis=1).max())
 
 
-def become(rest: FloatArray, nodes: FloatArray, length: float) -> str:
-    """What a robot has become whose nodes were at rest and are ``nodes`` now."""
-    if not np.isfinite(nodes).all() or volume(nodes) < FALLEN * volume(rest):
+def become(rest: FloatArray, last: Sequence[FloatArray], length: float) -> str:
+    """What a robot has become whose nodes were at rest, by where they are at its last moments."""
+    if not np.isfinite(last).all() or volume(last[-1]) < FALLEN * volume(rest):
         return "falls"
-    return "sags" if displaced(rest, nodes) > SAGS * length else "stands"
+    return "sags" if np.mean([displaced(rest, nodes) for nodes in last]) > SAGS * length else "stands"
 
 
 def worst(kinds: Iterable[str]) -> str:
@@ -147,12 +147,15 @@ def let_go(design: RobotDesign, way: str, only: Sequence[str] = ()) -> dict[str,
             start = robot.node_positions_in_world()
             above = is_inside(robot.centre_of_mass_in_world()[:2], start[robot.faces.triangles[face], :2])
             if name in only or (above and not only):
+                last = []
                 try:
-                    robot.step(round(SECONDS / robot.dt))
-                    nodes = robot.node_positions_in_world()
+                    robot.step(round((SECONDS - BREATH) / robot.dt))
+                    for _ in range(LOOKS):
+                        robot.step(round(BREATH / LOOKS / robot.dt))
+                        last.append(robot.node_positions_in_world())
                 except SimulationError:
-                    nodes = np.full_like(start, np.nan)
-                found[name] = become(start, nodes, design.length)
+                    last.append(np.full_like(start, np.nan))
+                found[name] = become(start, last, design.length)
     return found
 
 
@@ -216,7 +219,7 @@ def statics(verdict: Verdict) -> dict[str, str]:
     design = verdict.design
     faces, rest = hull_faces(design.standing), design.standing.nodes
     triangles = [faces.triangles[face_by_nodes(faces, face.names[0])] for face in verdict.faces]
-    return {name: worst(become(rest, lowest_energy(design, t, grip), design.length) for t in triangles)
+    return {name: worst(become(rest, [lowest_energy(design, t, grip)], design.length) for t in triangles)
             for name, grip in (("sliding", False), ("gripping", True))}  # fmt: skip
 
 

@@ -27,6 +27,7 @@ from tensegym.tasks.policy_trials import EPISODE_SECONDS, policy_setup
 from tensegym.tasks.trials import check_setup
 
 from .options import Count, Jobs, Within
+from .standing import tell_unless_standing
 
 
 @dataclass(frozen=True)
@@ -70,6 +71,7 @@ class Compare:
             design = setup.design
         self._check(design)
         with lock_folder(self.out):
+            tell_unless_standing(design, "pybullet")
             parts = list(self._parts(design))
             agrees = all(part.agrees for part in parts)
             data = {"design": design.name, "dt": self.dt, "agrees": agrees, "parts": {

@@ -21,6 +21,8 @@ from tensegym.report import Report, table
 from tensegym.robot.placement import placed
 from tensegym.structure.faces import face_by_nodes, hull_faces, resting_rotation
 
+from .standing import tell_unless_standing
+
 FORMATS = ("mjcf", "urdf")
 
 
@@ -49,6 +51,7 @@ class Export:
             raise InputError(f"{self.out} is there already; take another --out, or remove it")
         if not self.out.parent.is_dir():
             raise FileNotFoundError(f"no folder {self.out.parent} to make {self.out.name} in")
+        tell_unless_standing(design, "pybullet")
         texts = {"robot.xml": self._mjcf(design)} if self.to == "mjcf" else urdf_files(design)
         with replace_path(self.out) as folder:
             folder.mkdir()

@@ -21,6 +21,7 @@ from .robot import LEAST_TIME_STEP, TensegrityRobot
 
 SECONDS, LOOK = 3.0, 0.25  # s: how long a face is tried, and between two looks at whether the robot is at rest
 AT_REST = 1e-3  # m/s; the fastest node's mean speed over a look
+BREATH = 1.0  # s: the sag is a mean over as much, since a robot breathes on for long
 SHORTEST, SHORT, LONGEST = 2.5e-4, 1e-3, 4e-3  # s: time steps; dampers are eased that ask for less than a short one
 WITHIN = 0.9  # of the limit of explicit forces
 MOST_EASED = 2.0**13  # ratio of a damper over the eased one
@@ -32,7 +33,8 @@ class Settled(NamedTuple):
     names: tuple[str, ...]
     """Nodes of each of these faces, counted from 1, as in 3-5-12; the first one was tried."""
     sag: float
-    """Largest displacement of a node by the weight, after the best rigid motion [m]; nan where the simulation broke."""
+    """Largest displacement of a node by the weight, after the best rigid motion, a mean over the last second [m]; nan
+    where the simulation broke."""
     volume: float
     """Volume of the nodes' hull over that at rest."""
 
@@ -110,18 +112,22 @@ def settle(robot: TensegrityRobot, names: tuple[str, ...]) -> Settled:
     """Set a robot down on the first of the faces and let go, until it lies still, or flat."""
     rest = robot.design.standing.nodes
     robot.reset(face_by_nodes(robot.faces, names[0]))
-    nodes, whole = robot.node_positions_in_world(), hull_volume(rest)
+    nodes, whole, looks = robot.node_positions_in_world(), hull_volume(rest), list[FloatArray]()
     try:
         for _ in range(round(SECONDS / LOOK)):
             before = nodes
             robot.step(round(LOOK / robot.dt))
             nodes = robot.node_positions_in_world()
+            looks.append(nodes)
             still = np.linalg.norm(nodes - before, axis=1).max() < AT_REST * LOOK
             if still or hull_volume(nodes) < FLAT * whole:
+                looks = [nodes]
                 break
     except SimulationError:
         return Settled(names, float("nan"), float("nan"))
-    return Settled(names, displacement(rest, nodes), hull_volume(nodes) / whole)
+    last = looks[-round(BREATH / LOOK) :]
+    sag = float(np.mean([displacement(rest, nodes) for nodes in last]))
+    return Settled(names, sag, hull_volume(nodes) / whole)
 
 
 def displacement(rest: FloatArray, nodes: FloatArray) -> float:
