@@ -53,6 +53,19 @@ def test_a_robot_falls_below_its_least_pretension_and_stands_above():
     assert not falls_somewhere(heavy_prism(1.05 * least))
 
 
+def test_a_robot_that_would_stand_if_loaded_slowly_falls_as_it_is_let_go():
+    """What statics do not see: below its least pretension the prism overshoots and does not come back."""
+    design = heavy_prism(0.8 * standing_verdict(heavy_prism()).holding.least)
+    with TensegrityRobot(design, dt=1e-3) as robot:
+        face = robot.faces.names().index("1-2-3")
+        for loads in (np.linspace(0.01, 1, 100), np.ones(100)):
+            robot.reset(face)
+            for load in loads:
+                robot.world.set_gravity([0, 0, -load * design.gravity])
+                robot.step(40)
+            assert has_fallen(robot) == (loads[0] == 1)
+
+
 def test_where_no_pretension_does_the_stiffness_that_would_is_told():
     design = load_design(FALLS)
     verdict = tensegym.standing_verdict(design)
