@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from tensegym.errors import InputError, SimulationError
-from tensegym.files import lock_folder, write_json, write_text
+from tensegym.files import lock_folder, write_text
 from tensegym.plotting import require_matplotlib
 from tensegym.report import Report, table
 from tensegym.robot.engines import ENGINES, check_engine
@@ -50,7 +50,7 @@ def _write_page(folder: Path, jobs: int) -> Report:
     require_matplotlib()
     from tensegym.validation.figures import draw_all
     from tensegym.validation.page import page
-    from tensegym.validation.results import measure_all
+    from tensegym.validation.results import as_text, measure_all
 
     if not folder.is_dir():
         raise InputError(f"--page {folder}: there is no such folder")
@@ -58,7 +58,7 @@ def _write_page(folder: Path, jobs: int) -> Report:
     with lock_folder(kept):
         results = measure_all(kept / "parts", tuple(_engines()), jobs)
         write_text(folder / "validation.md", page(results, draw_all(results, kept)))
-        write_json(kept / "results.json", results)
+        write_text(kept / "results.json", as_text(results))
         shutil.rmtree(kept / "parts")
     rows = [row for part in results.values() for row in part["rows"]]
     passed = sum(row["passed"] for row in rows)

@@ -158,7 +158,7 @@ def _audit(curves: Curves) -> Any:
     times = np.array(data["time, s"]) - data["time, s"][0]
     panels[1].plot(times, data["allowed, J"], color=EXACT, label="start and work of the drives")
     panels[1].plot(times, data["energy, J"], color=ENGINE_COLOURS[engine], label="energy")
-    _label(panels[1], "time, s", "J", f"{TITLES[engine]}, the worst: seed {data['worst seed']}")
+    _label(panels[1], "time, s", "energy, J", f"{TITLES[engine]}, the worst: seed {data['worst seed']}")
     return figure
 
 

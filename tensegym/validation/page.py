@@ -34,7 +34,7 @@ def _summary(results: Results) -> Iterator[str]:
         parts = [part for part in results.values() if part["engine"] == engine]
         if parts:
             rows = [row for part in parts for row in part["rows"]]
-            where = parts[0]["setting"] if engine else "no engine: finite elements of flexures"
+            where = parts[0]["setting"] if engine else "finite elements of flexures; both engines, compared"
             yield f"| {where} | {len(rows)} | {sum(row['passed'] for row in rows)} | {_minutes(parts)} |"
     yield ""
 
@@ -93,10 +93,11 @@ def _number(value: float | None, digits: int = 6) -> str:
 
 def notes(name: str, parts: dict[str, dict[str, Any]]) -> Iterator[str]:
     """What is to be said about rows, and why those that fail do."""
-    lines = []
+    said: dict[str, list[str]] = {}
     for engine, part in parts.items():
-        where = f"{TITLES[engine]}: " if engine else ""
-        lines += [f"* {where}{row['note']}" for row in part["rows"] if row["note"]]
-        if not all(row["passed"] for row in part["rows"]):
-            lines.append(f"* {where}✗ {reason(name, engine)}")
+        texts = [row["note"] for row in part["rows"] if row["note"]]
+        texts += [] if all(row["passed"] for row in part["rows"]) else [f"✗ {reason(name, engine)}"]
+        for text in texts:
+            said.setdefault(text, []).append(TITLES.get(engine, ""))
+    lines = [f"* {': '.join(filter(None, (' and '.join(where), text)))}" for text, where in said.items()]
     yield from (*lines, "") if lines else ()

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from tensegym.errors import InputError
-from tensegym.files import write_json
+from tensegym.files import VERSION, write_json
 from tensegym.processes import process_map
 from tensegym.report import to_json
 from tensegym.tables import read_json
@@ -66,6 +66,12 @@ def measure_all(folder: Path, engines: tuple[str, ...], jobs: int = 0) -> Result
         done[key] = part
     return {f"{name} {engine}".strip(): done[name, engine] for name in PROBLEMS for engine in PROBLEMS[name].engines
             if (name, engine) in done}  # fmt: skip
+
+
+def as_text(results: Results) -> str:
+    """JSON, a part a line."""
+    lines = [f"{json.dumps(key)}: {json.dumps(value)}" for key, value in {"version": VERSION, **results}.items()]
+    return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
 def _parts(left: list[tuple[str, str]], jobs: int) -> Iterator[dict[str, Any]]:

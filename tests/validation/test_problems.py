@@ -83,10 +83,10 @@ def test_rolling_in_small(engine):
 
 
 def test_two_ways_part_at_a_positive_rate():
-    findings = rolling.parting("pybullet", seeds=1, seconds=8.0)
-    (apart,) = findings.curves["apart, mm"]
-    assert 10 * apart[0] < apart[-1] < 1.0
-    assert findings.curves["rate, 1/s"][0] > 0
+    findings = rolling.parting("pybullet", seeds=2, seconds=4.0)
+    _, apart = findings.curves["apart, mm"]
+    assert 1e2 * apart[0] < apart[-1] < 10.0
+    assert min(findings.curves["rate, 1/s"]) > 0
 
 
 def test_the_audit_names_its_worst_episode():

@@ -26,7 +26,8 @@ def at_rest_and_in_flight(engine: str) -> Findings:
 
 def end_faces(engine: str) -> Findings:
     """Every pull of one to three drives from every face, at two depths, to the face that it ends on. A pull on which
-    the engines differ is explained where PyBullet too ends elsewhere with 2 % more or less depth, or half the step."""
+    the engines differ is explained where PyBullet too ends elsewhere with 2 % more or less depth, or half the step.
+    Policies side by side: `tensegym compare --policy NAME`, see [engines.md](engines.md)."""
     found = steps(RobotDesign(), STEP, DEPTHS, jobs=1)
     equal, edge = found.curves["equal"], found.curves["on an edge"]
     return Findings([Row("faces", "pulls that end on the same face, or are explained: share", 1.0, equal + edge, 0.05,
