@@ -64,6 +64,7 @@ class Verdict(NamedTuple):
             "least_pretension_N": holding.least if holding else None,
             "highest_pretension_tried_N": holding.highest if holding else None,
             "faces_no_pretension_holds": list(holding.never) if holding else [],
+            "stiffness_that_would_N_per_m": holding.stiffer if holding else None,
             "faces": [{"faces": list(f.names), "sag_m": f.sag, "volume": f.volume, "fell": f.fell} for f in self.faces],
         }  # fmt: skip
 
