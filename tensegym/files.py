@@ -79,6 +79,14 @@ def without_version(data: dict[str, Any], path: Path | str) -> dict[str, Any]:
     return {key: value for key, value in data.items() if key != "version"}
 
 
+def check_file(path: Path) -> None:
+    """Look whether a file can be written at a path. Raises FileNotFoundError or InputError, before anything is done."""
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"no folder {path.parent} to write {path.name} in")
+    if path.is_dir():
+        raise InputError(f"{path} is a folder; give a file")
+
+
 def is_empty(folder: Path, but: Collection[str] = ()) -> bool:
     """Whether a folder is missing, or holds nothing ``but`` these and what a killed command left half written."""
     return not folder.exists() or all(e.name.startswith(_OWN) or e.name in but for e in folder.iterdir())

@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib
 import signal
 import sys
+import threading
 from typing import Any
 
 from tensegym.errors import InputError, TensegymError, one_line
@@ -115,8 +116,30 @@ def _terminate(*_: object) -> None:
     raise _Terminated
 
 
+def _again(swallowed: Any) -> None:
+    """Interrupt once more where a library's callback swallowed it, as the compiler's do."""
+    if not isinstance(swallowed.exc_value, KeyboardInterrupt):
+        sys.__unraisablehook__(swallowed)
+        return
+    how = signal.SIGINT
+    if isinstance(swallowed.exc_value, _Terminated):
+        signal.signal(signal.SIGTERM, _terminate)
+        how = signal.SIGTERM
+    soon = threading.Timer(0.05, _signal_main, [how])  # when the callback has returned
+    soon.daemon = True
+    soon.start()
+
+
+def _signal_main(how: int) -> None:
+    if sys.platform == "win32":
+        signal.raise_signal(how)
+    else:  # which also wakes it where it waits
+        signal.pthread_kill(threading.main_thread().ident or 0, how)
+
+
 def main() -> None:
     signal.signal(signal.SIGTERM, _terminate)
+    sys.unraisablehook = _again
     try:
         status = run(sys.argv[1:])
     except _Terminated:

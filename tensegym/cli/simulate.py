@@ -14,7 +14,7 @@ from tensegym.control.commands_file import read_commands
 from tensegym.control.playback import Playback
 from tensegym.design.design_file import as_design
 from tensegym.errors import DesignError, InputError
-from tensegym.files import replace_file
+from tensegym.files import check_file, replace_file
 from tensegym.physics import drives
 from tensegym.report import Report, table
 from tensegym.robot.gait import GaitMeter
@@ -50,10 +50,7 @@ class Simulate:
 
     def run(self) -> Report:
         design = as_design(self.design)
-        if not self.out.parent.is_dir():
-            raise FileNotFoundError(f"no folder {self.out.parent} to write {self.out.name} in")
-        if self.out.is_dir():
-            raise InputError(f"--out {self.out} is a folder; give a file")
+        check_file(self.out)
         times, angles = read_commands(self.commands, len(design.structure.stiff_cables))
         every = round(self.sample / self.dt)
         if every < 1 or not math.isclose(every * self.dt, self.sample, rel_tol=1e-6):

@@ -67,3 +67,30 @@ def test_a_search_that_is_ended_leaves_no_process_and_blocks_no_other(tmp_path, 
     left = {path.name for path in (tmp_path / "out").iterdir()} - {"storage.txt", "study.db", "study.db-wal",
                                                                   "study.db-shm"}  # fmt: skip
     assert left <= ({".tensegym-lock"} if how == signal.SIGKILL else set())
+
+
+SWALLOWS = """
+import ctypes, os, signal, sys, time
+from tensegym.cli import main
+
+def callback():
+    os.kill(os.getpid(), {how})
+    for _ in range(1000):
+        pass
+
+def run(words):
+    ctypes.CFUNCTYPE(None)(callback)()
+    print("swallowed", flush=True)
+    time.sleep(60)
+    return 0
+
+main.run = run
+main.main()
+"""
+
+
+@pytest.mark.parametrize(("how", "status"), [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
+def test_a_signal_that_a_librarys_callback_swallows_ends_the_command_all_the_same(how, status):
+    """As where the compiler calls back."""
+    done = subprocess.run([sys.executable, "-c", SWALLOWS.format(how=int(how))], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (status, "swallowed\n", "")

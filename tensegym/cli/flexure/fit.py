@@ -12,6 +12,7 @@ import tyro
 
 from tensegym.cli.options import Seed, Within
 from tensegym.errors import InputError
+from tensegym.files import check_file
 from tensegym.flexure.hinge.presets import MM
 from tensegym.flexure.measured.measured_file import ARM_LENGTH, PAPER_LENGTH
 from tensegym.flexure.measured.measured_report import fit_data
@@ -52,8 +53,7 @@ class Fit:
     """Beam elements a leaf of length L."""
 
     def run(self) -> Report:
-        if not self.out.parent.is_dir():
-            raise FileNotFoundError(f"no folder {self.out.parent} to write {self.out.name} in")
+        check_file(self.out)
         if self.data is not None:
             return self._fit_data(self.data)
         if not self.hinge:

@@ -13,7 +13,7 @@ import numpy as np
 from tensegym.arrays import FloatArray
 from tensegym.cli.options import Within
 from tensegym.errors import InputError
-from tensegym.files import replace_file
+from tensegym.files import check_file, replace_file
 from tensegym.flexure.hinge import Hinge
 from tensegym.flexure.models.joint import MODELS, Joint
 from tensegym.flexure.models.joint_file import load_joint
@@ -56,8 +56,7 @@ class Solve:
             refuse_unused([*self.options.given(), *self.box.given()], "with --joint, whose hinge and box are fitted")
         elif self.model == "fem":
             refuse_unused(self.box.given(), "with the model fem, which has no box")
-        if not self.out.parent.is_dir():
-            raise FileNotFoundError(f"no folder {self.out.parent} to write {self.out.name} in")
+        check_file(self.out)
         loads = read_loads(self.loads)
         answers, source = self._answers(loads)
         with replace_file(self.out) as file:

@@ -12,7 +12,7 @@ import tyro
 
 from tensegym.cli.options import Within
 from tensegym.errors import FlexureError, InputError
-from tensegym.files import replace_file
+from tensegym.files import check_file, replace_file
 from tensegym.flexure.measured.base_frame import BaseFrame, frame_at_rest
 from tensegym.flexure.measured.measured_file import quantity
 from tensegym.flexure.measured.photo import draw_overlay, read_grey
@@ -55,9 +55,7 @@ class Track:
     def run(self) -> Report:
         if not self.images:
             raise InputError("no pictures given")
-        folder = self.out.parent
-        if not folder.is_dir():
-            raise FileNotFoundError(f"no folder {folder} to write {self.out.name} in")
+        check_file(self.out)
         load_header, loads = read_loads(self.loads, self.images) if self.loads else ([], [[] for _ in self.images])
         frame = self._frame()
         sightings = [sight_file(path) for path in self.images]

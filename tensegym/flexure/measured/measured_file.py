@@ -42,6 +42,8 @@ UNITS: dict[str, dict[str, float]] = {
 }
 """Allowed units of every quantity and their size in SI."""
 
+MOST = 1e6  # m, N, Nm; what a stand measures is far below, and a point too few or digits too many far above
+
 LOADS = ("force", "Fx", "Fy", "torque")
 _NAMES = {name.lower(): name for name in UNITS} | {"theta": "angle", "mz": "torque"}
 
@@ -72,7 +74,8 @@ def read_measured(path: Path, arm_length: float = ARM_LENGTH) -> States:
     Raises:
         FileNotFoundError: where it is not there.
         InputError: naming file, column and row: a unit missing or unknown, a column missing, given twice or half a
-            pair, a cell that is no number, an angle not measured or past a quarter turn, loads that say nothing.
+            pair, a cell that is no number, an angle not measured or past a quarter turn, a number
+            above MOST, loads that say nothing.
     """
     header, rows, _ = read_rows(path)
     columns: dict[str, FloatArray] = {}
@@ -101,6 +104,10 @@ def _refuse_gaps(path: Path, columns: dict[str, FloatArray]) -> None:
         row, angle = int(past.argmax()), columns["angle"][past.argmax()]
         raise InputError(f"{path}: row {row + 1}: an angle of {math.degrees(angle):.4g} deg; a hinge turns less than "
                          "90 deg: is the column in degrees under a header in rad?")  # fmt: skip
+    for name, values in columns.items():
+        if (past := np.abs(values) > MOST).any():
+            row = int(past.argmax())
+            raise InputError(f"{path}: row {row + 1}: {name} = {values[row]:.4g} in SI units is above {MOST:g}")
     for one, other in (("x", "y"), ("Fx", "Fy")):
         if (one in columns) != (other in columns):
             lone, missing = (one, other) if one in columns else (other, one)

@@ -11,7 +11,7 @@ import numpy as np
 
 from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
-from tensegym.files import replace_file
+from tensegym.files import check_file, replace_file
 from tensegym.flexure.hinge import Box, hinge_from_dict, hinge_to_dict
 from tensegym.flexure.hinge.ranges import check_count
 from tensegym.tables import as_number, as_numbers, as_text, in_file, mapping, one_line, parse_json, read_text, show
@@ -32,8 +32,7 @@ HIGHEST_DEGREE = 30
 def save_joint(joint: Joint, path: str | Path) -> None:
     """Write the joint; the file is whole or not there."""
     path = Path(path)
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"no folder {path.parent} to write {path.name} in")
+    check_file(path)
     with replace_file(path) as file:
         json.dump(joint_to_dict(joint), file, indent=1)
         file.write("\n")
