@@ -52,8 +52,13 @@ class Verdict(NamedTuple):
         if self.holding:
             line += f"; {self.holding.text}"
         if self.design.shape.moved > 1e-3 * self.design.length:
-            line += f"\nform finding moved the given nodes by up to {self.design.shape.moved:.3g} m"
+            line += f"\n{self.moved}"
         return line
+
+    @property
+    def moved(self) -> str:
+        """What form finding did, in words."""
+        return f"form finding moved the given nodes by up to {self.design.shape.moved:.3g} m"
 
     def as_dict(self) -> dict[str, Any]:
         """Plain JSON types, but for nan where there is no number."""

@@ -138,7 +138,7 @@ def _lines(problem: Problem, store: Store, values: dict[str, Any], data: dict[st
     if len(data["best_so_far"]) > 1:
         yield from _table(["search", f"best {settings.objectives[0]}, as searched"], list(data["best_so_far"].items()))
         yield ""
-    yield from (f"The robot found {line}." for line in data["stands"].splitlines())
+    yield f"The robot found {data['stands']}.".replace("\n", "; ")
     yield ""
     yield "## Where it began and what was found"
     yield ""

@@ -355,6 +355,11 @@ def test_no_command_uses_a_robot_that_falls_without_a_word(cli, tmp_path):
     assert json.loads(text)["standing"]["verdict"] == "falls"
     assert_refused(cli("step", "--design", falls, "--out", tmp_path / "step"), "falls flat", "12 of 12 faces")
     assert not (tmp_path / "step").exists()
+    none = commands_csv(tmp_path / "none.csv", [(0.0,), (0.1,)], "time_s")
+    moved = falls.with_name("tall_4prism.toml")
+    status, _, told = cli("simulate", "--commands", none, "--out", tmp_path / "out.csv", "--design", moved)
+    assert status == 0
+    assert told == "tensegym: robot 'tall_4prism' stands; form finding moved the given nodes by up to 0.366 m\n"
 
 
 def test_simulate_takes_the_papers_robot_in_its_pose(cli, tmp_path):
