@@ -9,6 +9,7 @@ from typing import Any
 
 from tensegym.robot.engines import TITLES
 
+from .problem import PYBULLET
 from .problems import PROBLEMS
 from .reasons import reason
 from .results import Results
@@ -37,6 +38,18 @@ def _summary(results: Results) -> Iterator[str]:
             where = parts[0]["setting"] if engine else "finite elements of flexures; both engines, compared"
             yield f"| {where} | {len(rows)} | {sum(row['passed'] for row in rows)} | {_minutes(parts)} |"
     yield ""
+    yield from _failures(results)
+
+
+def _failures(results: Results) -> Iterator[str]:
+    """Where to look first."""
+    found = [(part, sum(not row["passed"] for row in part["rows"])) for part in results.values()]
+    if any(count for _, count in found):
+        yield "Rows that do not pass:"
+        yield ""
+        yield from (f"* {PROBLEMS[part['problem']].title}, {TITLES.get(part['engine'], 'any engine')}: {count} of "
+                    f"{len(part['rows'])}" for part, count in found if count)  # fmt: skip
+        yield ""
 
 
 def _minutes(parts: list[dict[str, Any]]) -> str:
@@ -58,7 +71,8 @@ def _sections(results: Results, figures: dict[str, Path]) -> Iterator[str]:
             yield ""
         yield " ".join((inspect.getdoc(problem.measure) or "").split())
         yield ""
-        yield f"Source: {problem.source}."
+        alone = " PyBullet alone: a URDF's joints are not in the protocol of engines." * (problem.engines == PYBULLET)
+        yield f"Source: {problem.source}.{alone}"
         yield ""
         yield from table(parts)
         yield from notes(name, parts)
