@@ -23,3 +23,5 @@ class Problem(NamedTuple):
     """In which it can be; one empty name where no engine takes part."""
     minutes: float = 0.1
     """About what it takes in one engine, to begin with the long ones."""
+    needs: tuple[str, ...] = ()
+    """Engines that it compares, and is left out without."""

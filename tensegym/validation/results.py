@@ -51,7 +51,8 @@ def _measured(item: tuple[str, str]) -> dict[str, Any]:
 def items(engines: tuple[str, ...]) -> list[tuple[str, str]]:
     """Problem and engine of every part, the long ones first."""
     long_first = sorted(PROBLEMS, key=lambda name: -PROBLEMS[name].minutes)
-    return [(name, engine) for name in long_first for engine in PROBLEMS[name].engines if engine in (*engines, "")]
+    return [(name, engine) for name in long_first if {*PROBLEMS[name].needs} <= {*engines}
+            for engine in PROBLEMS[name].engines if engine in (*engines, "")]  # fmt: skip
 
 
 def measure_all(folder: Path, engines: tuple[str, ...], jobs: int = 0) -> Results:

@@ -47,6 +47,12 @@ def test_quick_rows_are_still_measured_so(key):
         assert row["measured"] == pytest.approx(then["measured"], abs=0.1 * then["tolerance"])
 
 
+def test_an_engine_that_is_not_installed_is_left_out():
+    alone = results.items(("pybullet",))
+    assert {engine for _, engine in alone} == {"pybullet", ""}
+    assert {name for name, _ in results.items(ENGINES)} - {name for name, _ in alone} == {"sides", "faces"}
+
+
 def tiny(engine):
     """A problem that a test can wait for."""
     return Findings([Row("tiny", "answer", 42.0, 42.0, 0.0), Row("tiny", "guess", 1.0, 2.0, 0.5, 1e-3, "A guess.")])

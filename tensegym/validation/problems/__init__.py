@@ -1,6 +1,6 @@
 """The problems of the validation page, in its order; one topic a file."""
 
-from tensegym.validation.problem import NONE, PYBULLET, Problem
+from tensegym.validation.problem import BOTH, NONE, PYBULLET, Problem
 
 from . import (
     beams,
@@ -51,7 +51,9 @@ PROBLEMS: dict[str, Problem] = {
     "flight": Problem(_STEP, "Order in free flight", "order of the scheme", flight_order.flight_order, minutes=0.2),
     "steps": Problem(_STEP, "Speed of rolling at four time steps", "the same at 1 ms", rolling.time_steps, minutes=3),
     "parting": Problem(_STEP, "How fast two ways part", "sensitive dependence", rolling.parting, minutes=0.3),
-    "sides": Problem(_SIDES, "At rest and in flight", "the other engine", side_by_side.at_rest_and_in_flight, NONE),
-    "faces": Problem(_SIDES, "End faces of the table of tips", "the other engine", side_by_side.end_faces, NONE, 4),
+    "sides": Problem(_SIDES, "At rest and in flight", "the other engine", side_by_side.at_rest_and_in_flight, NONE,
+                     needs=BOTH),
+    "faces": Problem(_SIDES, "End faces of the table of tips", "the other engine", side_by_side.end_faces, NONE, 4,
+                     needs=BOTH),
     "audit": Problem("Energy", "Energy audit of random commands", "first law", energy_audit.energy_audit, minutes=5),
 }  # fmt: skip
