@@ -23,7 +23,7 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from tests.fuzz.judge import NAMES, Foreign, trial
 from tests.fuzz.readers import READERS
 
-PATIENCE = 60  # s; no valid input takes as long
+PATIENCE = 120  # s; no valid input takes as long, on a busy machine either
 MEMORY = 12 << 30  # bytes of address space
 
 

@@ -156,4 +156,9 @@ def copied(given: tuple[str, str, list[str]]) -> None:
             np.testing.assert_array_equal(one, other)
     finally:
         for each in {id(own): own, id(found): found}.values():
-            getattr(each, "close", getattr(getattr(each, "robot", None), "close", int))()
+            close(each)
+
+
+def close(living: Any) -> None:
+    """Free its engine, or that of its robot, where it has one."""
+    getattr(living, "close", getattr(getattr(living, "robot", None), "close", int))()
