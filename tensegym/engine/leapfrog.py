@@ -17,16 +17,11 @@ from .split_rod_step import step_split_rods
 
 
 @kernel(**ALLOCATING)
-def leapfrog(model, state, out, dt):
-    """Replace the forces and moments on the bodies, out.wrenches as `substep` leaves them, by those under which the
+def engine_substep(model, ground, state, out, dt, implicit):
+    """`substep`, and then in place of the forces and moments on the bodies, out.wrenches, those under which the
     engine's step is one of the leapfrog. Of a second half a moment along the pin is left: its force has been carried
     over to the first one."""
-    turn_rods(model, dt, out)
-    step_split_rods(model, state, dt, out)
-
-
-@kernel(**ALLOCATING)
-def engine_substep(model, ground, state, out, dt, implicit):
-    """`substep`, its out.wrenches made those for the engine."""
     substep(model, ground, state, out, dt, implicit)
-    leapfrog(model, state, out, dt)
+    turn_rods(model.body_params, model.other_half, dt, out.rotations, out.velocities, out.wrenches)
+    if len(model.pin_bodies):
+        step_split_rods(model, state, dt, out)

@@ -26,17 +26,19 @@ def gyroscopic_change(w, axis, across, along, dt):
 
 
 @kernel(**KERNEL)
-def turn_rods(model, dt, out):
-    """Replace the moments in out.wrenches by those that make the engine take a leapfrog step under them; not of halves
-    of split rods, see split_rod_step.py."""
-    params = model.body_params
+def turn_rods(params, other_half, dt, rotations, velocities, wrenches):
+    """Replace the moments in wrenches (b, 6) by those that make the engine take a leapfrog step under them; not of
+    halves of split rods, see split_rod_step.py.
+
+    params (b, 4), other_half (b,), rotations (b, 3, 3), velocities (b, 6): the Model's and the Out's.
+    """
     for b in range(len(params)):
         across, along = 1 / params[b, INVERSE_TRANSVERSE], 1 / params[b, INVERSE_AXIAL]
-        if model.other_half[b] >= 0 or across == along:
+        if other_half[b] >= 0 or across == along:
             continue  # split, or a ball, which has no gyroscopic term
-        w = out.velocities[b, 3], out.velocities[b, 4], out.velocities[b, 5]
-        axis = out.rotations[b, 0, 2], out.rotations[b, 1, 2], out.rotations[b, 2, 2]
-        moment = out.wrenches[b, 3:]
+        w = velocities[b, 3], velocities[b, 4], velocities[b, 5]
+        axis = rotations[b, 0, 2], rotations[b, 1, 2], rotations[b, 2, 2]
+        moment = wrenches[b, 3:]
         new = _leapfrog(w, axis, across, along, dt, moment)
         engine = gyroscopic_change(w, axis, across, along, dt)
         change = new[0] - w[0] - engine[0], new[1] - w[1] - engine[1], new[2] - w[2] - engine[2]

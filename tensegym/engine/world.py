@@ -102,7 +102,7 @@ class World(Uncopied, ABC):
     @abstractmethod
     def step(self, wrenches: FloatArray) -> None:
         """Apply force [N] and moment [N m], (l, 6), about the links' centres as last read, world axes, and advance one
-        time step. Forces on second links may be left out: `leapfrog` makes none."""
+        time step. Forces on second links may be left out: `engine_substep` makes none."""
 
     def run(
         self, count: int, model: Model, ground: Ground, state: Arrays, out: Out, dt: float, implicit: bool

@@ -135,8 +135,6 @@ class MujocoWorld(World):
     def run(
         self, count: int, model: Model, ground: Ground, state: State, out: Out, dt: float, implicit: bool
     ) -> None:
-        if not hasattr(self, "data"):
-            raise SimulationError("the robot's world is closed")
         with _quiet():
             if self.compiled:
                 c_interface.run(count, self._access, model, ground, state, out, dt, implicit)

@@ -44,7 +44,7 @@ def substep(model, ground, state, out, dt, implicit):
         explicit_tensions(model.spring_params, state.lengths, state.rates, state.natural, tensions)
 
     tension_wrenches(model.spring_bodies, out, tensions)
-    damp_spins(model, state, dt, out)
+    damp_spins(model.body_params, state.poses, state.last_poses, dt, out.rotations, out.velocities, out.wrenches)
     _wind(model, state, out, dt)
     _add_paths(model, ground, state, out)
     poses, last_poses = state.poses, state.last_poses
