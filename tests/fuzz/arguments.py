@@ -32,7 +32,11 @@ MADE = st.tuples(
     SEEDS,
     OPTIONS,
 )  # fmt: skip
-UNKNOWN = ("max_episode_steps",)  # an argument of gymnasium's own, which checks it as it likes
+# arguments that gymnasium looks at itself, and what it takes; others it raises of before anything here is asked
+ITS_OWN = {
+    "max_episode_steps": lambda value: isinstance(value, int) and value > 0,
+    "render_mode": lambda value: value is None or isinstance(value, str),
+}
 
 
 def make(given: tuple[dict[str, Any], Any, Any]) -> None:
@@ -40,8 +44,7 @@ def make(given: tuple[dict[str, Any], Any, Any]) -> None:
     import gymnasium as gym
 
     arguments, seed, options = given
-    if not isinstance(arguments.get("max_episode_steps", 1), int):
-        arguments = {name: value for name, value in arguments.items() if name not in UNKNOWN}
+    arguments = {name: value for name, value in arguments.items() if ITS_OWN.get(name, lambda _: True)(value)}
     arguments = {"settle": 0.0, "control_period": 0.02} | arguments
     env = gym.make("tensegym:tensegym/SixRodRolling-v0", disable_env_checker=True, **arguments)
     try:

@@ -285,6 +285,6 @@ def test_odd_values_in_joint_files_are_named(joint_file, tmp_path, spoil, words)
 def test_texts_that_are_no_joint_files(text, tmp_path):
     path = tmp_path / "no.json"
     path.write_text(text)
-    with pytest.raises(FlexureError, match=r"is not JSON|is no joint file|holds null bytes|holds null bytes") as caught:
+    with pytest.raises(FlexureError, match=r"is not JSON|is no joint file|holds null bytes|nested too deep") as caught:
         load_joint(path)
     assert "\n" not in str(caught.value) and len(str(caught.value)) <= 300
