@@ -22,7 +22,8 @@ from tensegym.files import VERSION, lock_folder, write_text
 from tensegym.plotting import require_matplotlib
 from tensegym.report import Report, table, to_json
 from tensegym.robot.engines import check_engine
-from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityRobot
+from tensegym.robot.robot import TensegrityRobot
+from tensegym.robot.step_check import LARGEST_TIME_STEP, LEAST_TIME_STEP
 from tensegym.tasks.policy_trials import EPISODE_SECONDS, policy_setup
 from tensegym.tasks.trials import check_setup
 

@@ -11,7 +11,7 @@ from tensegym.control.table import make_controller
 from tensegym.errors import InputError
 from tensegym.files import VERSION, lock_folder, write_text
 from tensegym.report import Report, table, to_json
-from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP
+from tensegym.robot.step_check import LARGEST_TIME_STEP, LEAST_TIME_STEP
 from tensegym.tables import fill, in_file, read_toml
 from tensegym.tasks.disturbance import Disturbance
 from tensegym.tasks.figures import GaitRecorder, draw_gait, write_video
@@ -117,4 +117,5 @@ def _text(summaries: dict[str, dict[str, Any]], measures: tuple[str, ...]) -> st
         texts.append("median [least, most] of\n" + table(["controller", *measures], shown))
     fallen = [f"{name}: {s['fallen']} of {s['episodes']} episodes ended flat on the ground and make no way"
               for name, s in summaries.items() if s["fallen"]]  # fmt: skip
-    return "\n\n".join([*texts, *fallen])
+    faults = [f"{name}, first audit failure: {s['audit_fault']}" for name, s in summaries.items() if s["audit_fault"]]
+    return "\n\n".join([*texts, *fallen, *faults])

@@ -18,8 +18,9 @@ from tensegym.files import check_file, replace_file
 from tensegym.physics import drives
 from tensegym.report import Report, table
 from tensegym.robot.gait import GaitMeter
-from tensegym.robot.robot import LARGEST_TIME_STEP, TensegrityRobot
+from tensegym.robot.robot import TensegrityRobot
 from tensegym.robot.start_poses import start_at
+from tensegym.robot.step_check import LARGEST_TIME_STEP
 
 from .options import Within
 from .standing import tell_unless_standing
@@ -78,11 +79,11 @@ class Simulate:
             writer.writerow(header)
             writer.writerows([[f"{v:.9g}" for v in row] for row in rows])
         data = {"out": str(self.out), "rows": len(rows), "columns": len(header), **gait.as_dict(),
-                "standing": standing}  # fmt: skip
+                "standing": standing, "fault": meter.fault}  # fmt: skip
         text = table(["out", "rows", "columns", "path m", "tips", "slip share", "energy J", "audit excess"],
                      [[str(self.out), len(rows), len(header), gait.path, gait.tips, gait.slip_share, gait.energy,
                        gait.audit_excess]])  # fmt: skip
-        return Report(text, data)
+        return Report(f"{text}\n{meter.fault}" if meter.fault else text, data)
 
 
 def _header(robot: TensegrityRobot) -> list[str]:

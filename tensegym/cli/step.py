@@ -15,8 +15,9 @@ from tensegym.design.design_file import as_design
 from tensegym.errors import InputError, SimulationError
 from tensegym.plotting import require_matplotlib
 from tensegym.report import Report, table
-from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityRobot
+from tensegym.robot.robot import TensegrityRobot
 from tensegym.robot.standing import Verdict, standing_verdict
+from tensegym.robot.step_check import LARGEST_TIME_STEP, LEAST_TIME_STEP
 from tensegym.structure.faces import face_by_nodes
 
 from .figures import PERIOD, draw_drives, draw_storyboard, record_step

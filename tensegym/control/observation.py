@@ -15,8 +15,9 @@ from tensegym.design.variation import Variation
 from tensegym.errors import DesignError
 from tensegym.physics import drives
 from tensegym.physics.model import DAMPING, STIFFNESS
+from tensegym.robot.energy_check import SPEED_BOUND
 from tensegym.robot.reading import NODE_REACH, Reading, heading_rotation, read
-from tensegym.robot.robot import SPEED_BOUND, TensegrityRobot
+from tensegym.robot.robot import TensegrityRobot
 
 from .bearing import Bearing
 

@@ -39,6 +39,12 @@ def explicit_tensions(springs, lengths, rates, natural, tensions):
 
 
 @kernel(**KERNEL)
+def is_slow(mobility, stiffness, damping, dt):
+    """Whether a flexure's own motion, at a mobility of its angle [1/(kg m^2)], is slow against the step: see above."""
+    return dt * mobility * max(dt * stiffness, damping) < _SLOW
+
+
+@kernel(**KERNEL)
 def implicit_tensions(model, out, lengths, rates, natural, dt, tensions):
     """Write the tensions (s,) at the end of the step, from the geometry in ``out``; they start from the last step's.
 
@@ -65,7 +71,7 @@ def implicit_tensions(model, out, lengths, rates, natural, dt, tensions):
     for r in range(count):
         c = rows[r]
         k, damping = springs[c, STIFFNESS], springs[c, DAMPING]
-        if c >= cables and dt * mobility[r, r] * max(dt * k, damping) < _SLOW:
+        if c >= cables and is_slow(mobility[r, r], k, damping, dt):
             weight[r] = np.inf
             tension[r] = k * (lengths[c] - natural[c]) + damping * rates[c]
         pivot[r] = mobility[r, r] + weight[r]

@@ -28,6 +28,33 @@ def drive_constants(drive: Drive) -> FloatArray:
     return np.array(astuple(drive), dtype=float)
 
 
+def winding_speed(drive: Drive) -> float:
+    """Speed at which a drive winds an unloaded cable in [m/s]."""
+    rotor = min(drive.speed_limit, drive.voltage_limit / drive.torque_constant)
+    return rotor / drive.gear_ratio * drive.spool_radius
+
+
+def drive_step_limit(drive: Drive) -> float:
+    """Time step [s] from which on an unloaded drive without friction hunts about its command.
+
+    Its loop is J w' + (Kt^2 / R) w + (Kt / R) (velocity_gain w + position_gain angle) = 0, with the back-emf at the end
+    of a step and the controller at its start: stable below the positive root of
+    dt^2 Kt position_gain / R + 2 dt Kt (velocity_gain - Kt) / R = 4 J, as `tensegym.physics.step_limit` derives.
+    """
+    per_volt = drive.torque_constant / drive.resistance
+    square, linear = per_volt * drive.position_gain, per_volt * (drive.velocity_gain - drive.torque_constant)
+    return float((np.sqrt(linear**2 + 4 * square * drive.rotor_inertia) - linear) / square)
+
+
+def most_gains(drive: Drive, dt: float) -> tuple[float, float]:
+    """The position gain [V/rad], and the velocity gain [V s/rad] at it, at which that limit is ``dt`` [s]; a position
+    gain of 0 or below says that the velocity gain alone is too much."""
+    per_volt = drive.torque_constant / drive.resistance
+    room = 4 * drive.rotor_inertia + 2 * dt * per_volt * drive.torque_constant
+    position = (room - 2 * dt * per_volt * drive.velocity_gain) / (per_volt * dt**2)
+    return position, room / (2 * dt * per_volt) - dt * drive.position_gain / 2
+
+
 @kernel(**KERNEL)
 def _clip(value, limit):
     return min(max(value, -limit), limit)

@@ -13,8 +13,6 @@ from .geometry import spring_geometry
 from .mobility import mobility_matrix
 from .model import (
     DAMPING,
-    END_A,
-    END_B,
     INVERSE_AXIAL,
     INVERSE_MASS,
     INVERSE_TRANSVERSE,
@@ -169,24 +167,3 @@ def mobility_at_rest(model: Model) -> FloatArray:
     out.rows[:] = np.arange(count)
     mobility_matrix(model, out, count)
     return out.mobility[:, :count]
-
-
-def spin_step_limit(model: Model) -> tuple[float, int]:
-    """Largest time step [s] at which the rods' spins are stable about rest, and the body that sets it.
-
-    Damping and the pull of cables tied beside the axis are explicit, I x'' + c x' + k x = 0 with rates that lag half a
-    step, which is stable while dt^2 k / I + 2 dt c / I < 4 holds.
-    """
-    out, lengths = new_out(model), np.empty(len(model.spring_bodies))
-    spring_geometry(model, model.rest_poses, np.zeros(len(model.pin_bodies)), out, lengths)
-    cables = slice(0, model.first_driven)
-    tensions = model.spring_params[cables, STIFFNESS] * (lengths - model.rest_lengths)[cables]
-    held = np.zeros(len(model.masses))
-    for side, end in enumerate((END_A, END_B)):
-        bodies = model.spring_bodies[cables, side]
-        across = np.einsum("cji,cj->ci", out.rotations[bodies], out.directions[cables])[:, :2]
-        pull = tensions * np.einsum("ci,ci->c", across, model.spring_params[cables, end][:, :2]) * (1 - 2 * side)
-        np.add.at(held, bodies, np.maximum(pull, 0.0))
-    spring, damper = (x * model.body_params[:, INVERSE_AXIAL] for x in (held, model.body_params[:, SPIN_DAMPING]))
-    limits = 4 / np.maximum(damper + np.sqrt(damper**2 + 4 * spring), 1e-300)
-    return float(limits.min()), int(limits.argmin())

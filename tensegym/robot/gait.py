@@ -11,6 +11,7 @@ from tensegym.arrays import FloatArray
 from tensegym.physics.drives import CURRENT
 from tensegym.structure.faces import supporting_face
 
+from .fault import element_energies, most_gained
 from .robot import TensegrityRobot
 
 AUDIT_TOLERANCE = 0.01  # mechanical energy over what the start and the drives' work allow
@@ -88,7 +89,10 @@ class GaitMeter:
         self._start_time = robot.time
         self._start_totals = robot.totals()
         self._start_energy = robot.energies().total
+        self._start_energies = element_energies(robot)
         self._excess = 0.0
+        self.fault: str | None = None
+        """When and by what the energy audit was broken first, None while it holds."""
         self._planes = robot.faces.planes
         self.tips = 0
         self.face = self._face(robot.nodes_in_world()[0], self._start)
@@ -106,6 +110,11 @@ class GaitMeter:
         allowed = self._start_energy + robot.totals().drive_work - self._start_totals.drive_work
         total = robot.energies(velocities).total
         self._excess = max(self._excess, total / allowed - 1 if allowed else float(total > 0))
+        if self.fault is None and not self._excess <= AUDIT_TOLERANCE:
+            self.fault = (
+                f"the energy audit broke at t = {robot.time:.4g} s, {100 * self._excess:.3g} % over: most gained by "
+                f"{most_gained(robot, self._start_energies)}; lower dt = {robot.dt:g} s"
+            )
 
     def exchange(self, energy: float) -> None:
         """Energy [J] that came from outside, and not through the drives."""

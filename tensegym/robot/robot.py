@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import TracebackType
-from typing import Literal, cast
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,19 +14,19 @@ from tensegym.design.design import RobotDesign
 from tensegym.engine import Closed, World
 from tensegym.errors import DesignError, SimulationError
 from tensegym.physics.drives import COMMAND
-from tensegym.physics.model import Model
-from tensegym.physics.robot_arrays import explicit_step_limit, robot_model, spin_step_limit
+from tensegym.physics.robot_arrays import robot_model
 from tensegym.physics.terrain import FLAT, Ground, Terrain
 from tensegym.structure.faces import resting_rotation
 
+from .clearance import check_clear
+from .energy_check import SPEED_BOUND
 from .engines import open_world
+from .fault import divergence
 from .placement import pin_rates, placed, reach, robot_scene
 from .robot_state import RobotState
+from .step_check import Integrator, held_implicit
 
-Integrator = Literal["auto", "explicit", "implicit"]
-LEAST_TIME_STEP, LARGEST_TIME_STEP = 1e-6, 4e-3  # s; at 5 ms feet and rods in contact make energy, at 4 ms none did
 _MOST_AT_ONCE = 1000  # substeps, some 20 ms of them, between two looks at signals such as Ctrl-C
-SPEED_BOUND = 50.0  # m/s; nothing on these robots moves so fast unless the integration has diverged
 
 
 class TensegrityRobot(RobotState):
@@ -45,14 +45,9 @@ class TensegrityRobot(RobotState):
         integrator: Integrator = "auto", gui: bool = False, compiled: bool | None = None, engine: str = "pybullet",
     ) -> None:  # fmt: skip
         design = design or RobotDesign()
-        if not LEAST_TIME_STEP <= dt <= LARGEST_TIME_STEP:
-            raise DesignError(f"dt = {dt!r} is outside [{LEAST_TIME_STEP:g}, {LARGEST_TIME_STEP:g}] s")
         model = robot_model(design)
-        limit = explicit_step_limit(model)
-        if integrator == "explicit" and dt > limit:
-            raise DesignError(f"dt = {dt:g} s is over the explicit limit of {limit:.3g} s; take integrator='implicit'")
-        _check_spin(design, model, dt)
-        self.implicit = integrator == "implicit" or (integrator == "auto" and dt > limit)
+        self.implicit = held_implicit(design, model, dt, integrator)
+        check_clear(design)
 
         surface = FLAT
         if isinstance(ground, Terrain):
@@ -137,18 +132,10 @@ class TensegrityRobot(RobotState):
         self.time += substeps * self.dt
         if self._ground.rough:
             self._check_ground()
-        fastest = np.abs(self.rates).max(initial=0.0)
-        if not fastest < SPEED_BOUND:
-            raise SimulationError(f"diverged at t = {self.time:.4g} s: {self._fastest_cable()} changes length at "
-                                  f"{fastest:.3g} m/s; lower dt = {self.dt:g} s")  # fmt: skip
-
-    def _fastest_cable(self) -> str:
-        """Name of the cable whose length changes the most; a nan counts as that."""
-        row, structure = int(np.nan_to_num(np.abs(self.rates), nan=np.inf).argmax()), self.design.structure
-        pairs = np.concatenate([structure.cables, structure.stiff_cables])
-        if row >= len(pairs):
-            return f"the payload's cable of rod {'-'.join(map(str, structure.rods[row - len(pairs)] + 1))}"
-        return f"{'cable' if row < len(structure.cables) else 'stiff cable'} {'-'.join(map(str, pairs[row] + 1))}"
+        # bodies that diverge drag their cables along
+        whole = len(self.rates) or np.isfinite(self.poses_in_world).all()
+        if not (whole and np.abs(self.rates).max(initial=0.0) < SPEED_BOUND):
+            raise SimulationError(divergence(self))
 
     def _check_ground(self) -> None:
         """Raise SimulationError for a foot that is lost: other than a plane, bumps have an edge, and an underside."""
@@ -158,18 +145,3 @@ class TensegrityRobot(RobotState):
             foot = int(lost.argmax())
             where = "over the edge of" if np.isnan(heights[foot]) else "through"
             raise SimulationError(f"foot {foot + 1} went {where} the ground by t = {self.time:.4g} s")
-
-
-def _check_spin(design: RobotDesign, model: Model, dt: float) -> None:
-    """Raise DesignError for rods that would spin up at this time step."""
-    limit, body = spin_step_limit(model)
-    if dt < limit:
-        return
-    rod = body if body < len(design.structure.rods) else int(model.other_half[body])
-    most = 2 / dt * design.rod(rod).axial_inertia
-    name = "-".join(map(str, design.structure.rods[rod] + 1))
-    raise DesignError(
-        f"spin_damping = {design.spin_damping:g} N m s/rad and the cables spin rod {name} up at dt = {dt:g} s: with "
-        f"its axial inertia of {design.rod(rod).axial_inertia:.3g} kg m^2 the damping must be below {most:.3g} "
-        f"and dt below {limit:.3g} s; lower either, or take thicker or heavier ends"
-    )

@@ -17,7 +17,8 @@ from tensegym.physics.robot_arrays import explicit_step_limit, robot_model
 from tensegym.structure.faces import face_by_nodes
 
 from .fallen import FALLEN, FLAT, hull_volume
-from .robot import LEAST_TIME_STEP, TensegrityRobot
+from .robot import TensegrityRobot
+from .step_check import LEAST_TIME_STEP
 
 SECONDS, LOOK = 3.0, 0.25  # s: how long a face is tried, and between two looks at whether the robot is at rest
 AT_REST = 1e-3  # m/s; the fastest node's mean speed over a look

@@ -11,9 +11,10 @@ from tensegym.arrays import FloatArray
 from tensegym.control.bearing import Bearing
 from tensegym.engine import Uncopied
 from tensegym.errors import SimulationError
+from tensegym.robot.energy_check import SPEED_BOUND
 from tensegym.robot.gait import NO_GAIT, DriveMeter, GaitMeter, GaitMetrics
 from tensegym.robot.reading import NODE_REACH, Reading, farthest_node, read
-from tensegym.robot.robot import SPEED_BOUND, TensegrityRobot
+from tensegym.robot.robot import TensegrityRobot
 
 from .faults import Faults
 from .goal import Heading
@@ -79,6 +80,11 @@ class Episode(Uncopied):
     def sound(self) -> bool:
         """Whether what it did can be believed: it has not diverged, and keeps the energy audit."""
         return not self.diverged and self.gait.audit_passed
+
+    @property
+    def fault(self) -> str | None:
+        """When and by what the energy audit was broken, None while it holds."""
+        return self.meter.fault if self.gait is not NO_GAIT else None
 
     def advance(self, angles: FloatArray, substeps: int, watcher: Watcher | None = None) -> dict[str, float]:
         """Command spool angles (w,) [rad], hold them for so many time steps; returns the signed reward terms."""

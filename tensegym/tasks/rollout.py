@@ -34,6 +34,8 @@ class Result(NamedTuple):
     diverged: bool
     fallen: bool = False
     """Whether it lay flat at the end, with a quarter of its volume at rest or less."""
+    fault: str | None = None
+    """When and by what the energy audit was broken, None where it held."""
 
     @property
     def sound(self) -> bool:
@@ -43,7 +45,7 @@ class Result(NamedTuple):
     def row(self) -> dict[str, Any]:
         """Plain JSON types: how it began and ended, and the gait as measured."""
         ends = {"seed": self.seed, "face": self.start.face, "terminated": self.diverged, "ended": self.ended,
-                "fallen": self.fallen}  # fmt: skip
+                "fallen": self.fallen, "fault": self.fault}  # fmt: skip
         return ends | self.gait.as_dict()
 
     def scores(self) -> dict[str, float]:
@@ -111,4 +113,5 @@ def _result(episode: Episode, seed: int) -> Result:
     fallen = not episode.diverged and has_fallen(episode.robot, FLAT)
     sound = episode.sound and not fallen
     measures |= task.measures(episode) if sound else {n: task.WORST.get(n, 0.0) for n in task.MEASURES}
-    return Result(seed, episode.start, episode.gait, measures, str(episode.ended), episode.diverged, fallen)
+    return Result(seed, episode.start, episode.gait, measures, str(episode.ended), episode.diverged, fallen,
+                  episode.fault)

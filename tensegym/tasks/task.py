@@ -15,7 +15,8 @@ from tensegym.errors import DesignError, InputError
 from tensegym.physics.terrain import Terrain, longest_reach
 from tensegym.robot.engines import ENGINES
 from tensegym.robot.gait import GaitMetrics
-from tensegym.robot.robot import LARGEST_TIME_STEP, LEAST_TIME_STEP, TensegrityRobot
+from tensegym.robot.robot import TensegrityRobot
+from tensegym.robot.step_check import LARGEST_TIME_STEP, LEAST_TIME_STEP
 from tensegym.tables import Checked, bounded, choice, fill, noted, parsed
 
 from .bound import Bound

@@ -138,6 +138,7 @@ def summarise(results: Sequence[Result]) -> dict[str, Any]:
         "tips_median": float(np.median([gait.tips for gait in gaits])),
         "cost_of_transport_median": float(np.median(costs)) if costs else None,
         "audit_failures": sum(not gait.audit_passed for gait in gaits),
+        "audit_fault": next((result.fault for result in results if result.fault), None),
         "audit_excess_max": float(max(gait.audit_excess for gait in gaits)),
         "terminated": sum(result.diverged for result in results),
         "measures": {name: _spread([result.measures[name] for result in results])

@@ -1,4 +1,4 @@
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from tensegym.design.design import Drive
 from tensegym.physics import drives as D
+from tensegym.physics.drives import drive_step_limit, most_gains
 from tensegym.robot.robot import TensegrityRobot
 
 
@@ -99,3 +100,18 @@ def test_each_drive_has_constants_of_its_own():
         assert turned[0] == 0
         assert turned[1] <= 1e-9
         assert turned[2:].min() > 0.05
+
+
+@pytest.mark.parametrize("gains", [{"position_gain": 60.0}, {"velocity_gain": 0.08}])
+def test_a_drive_settles_below_its_time_step_limit_and_hunts_above(gains):
+    drive = replace(Drive(), backlash=0.0, gear_efficiency=1.0, **gains)
+    limit = drive_step_limit(drive)
+    for dt, settles in ((0.97 * limit, True), (1.03 * limit, False)):
+        state, constants = np.zeros(D.STATE_SIZE), D.drive_constants(drive)
+        state[D.COMMAND] = 1e-6  # small enough for no limit of the drive to be reached at once
+        for _ in range(3000):
+            D.drive_step(constants, state, 0.0, dt)
+        assert (abs(state[D.ROTOR_SPEED]) < 1e-9) == settles
+    position, velocity = most_gains(drive, limit)
+    assert position == pytest.approx(drive.position_gain, rel=1e-9)
+    assert velocity == pytest.approx(drive.velocity_gain, abs=1e-9)
