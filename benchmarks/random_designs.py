@@ -166,7 +166,7 @@ class RandomDesigns:
 
 
 def _header() -> list[str]:
-    return ["designs", "dt ms", "not loadable", *ENDINGS, "unforetold of accepted"]
+    return ["designs", "dt ms", "not loadable", *ENDINGS, "broke, of accepted", "unnamed, of accepted"]
 
 
 def _counted(done: list[dict[str, Any]], steps: tuple[float, ...]) -> Iterator[list[object]]:
@@ -175,9 +175,9 @@ def _counted(done: list[dict[str, Any]], steps: tuple[float, ...]) -> Iterator[l
             own = [row for row in done if kind in (row["kind"], "all")]
             seen = Counter(row["steps"][f"{dt:g}"]["ending"] for row in own)
             accepted = len(own) - seen["refused"]
-            unforetold = seen[ENDINGS[4]] + seen[ENDINGS[5]]
+            parts = [sum(seen[e] for e in ENDINGS[first:]) / max(1, accepted) for first in (2, 4)]
             lost = sum(len(row["unloadable"]) for row in own)
-            yield [kind, 1e3 * dt, lost, *(seen[e] for e in ENDINGS), f"{100 * unforetold / max(1, accepted):.1f} %"]
+            yield [kind, 1e3 * dt, lost, *(seen[e] for e in ENDINGS), *(f"{100 * part:.1f} %" for part in parts)]
 
 
 if __name__ == "__main__":
