@@ -81,6 +81,7 @@ def test_torque_alone_is_a_pure_moment_and_empty_cells_are_not_measured(tmp_path
 
 
 @pytest.mark.parametrize(("content", "words"), [
+    ("angle_deg,force_N\n1,0.1\n2,-1e299\n", ("row 2: force = -1e+299 in SI units is above 1e+06",)),
     ("angle,x_mm,y_mm,force_N\n1,2,3,4\n", ("'angle'", "no unit", "angle_deg or angle_rad")),
     ("angle_deg,x,y_mm,force_N\n1,2,3,4\n", ("'x'", "no unit", "x_mm or x_m")),
     ("angle_deg,x_mm,y_inch,force_N\n1,2,3,4\n", ("'y_inch'", "unknown unit 'inch'", "y_mm or y_m")),
