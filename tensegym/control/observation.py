@@ -18,6 +18,7 @@ from tensegym.physics.model import DAMPING, STIFFNESS
 from tensegym.robot.energy_check import SPEED_BOUND
 from tensegym.robot.reading import NODE_REACH, Reading, heading_rotation, read
 from tensegym.robot.robot import TensegrityRobot
+from tensegym.tables import show
 
 from .bearing import Bearing
 
@@ -191,7 +192,7 @@ def make_observation(kind: str, robot: TensegrityRobot, variation: Variation | N
     Raises:
         DesignError: there is no such kind.
     """
-    if kind not in OBSERVATIONS:
-        raise DesignError(f"observation = {kind!r} is not one of {', '.join(OBSERVATIONS)}")
+    if not isinstance(kind, str) or kind not in OBSERVATIONS:
+        raise DesignError(f"observation = {show(kind)} is not one of {', '.join(OBSERVATIONS)}")
     plain: Observation = OBSERVATIONS[kind](robot)
     return ConditionedObservation(plain, robot, variation) if variation else plain

@@ -113,7 +113,7 @@ class GaitMeter:
         if self.fault is None and not self._excess <= AUDIT_TOLERANCE:
             self.fault = (
                 f"the energy audit broke at t = {robot.time:.4g} s, {100 * self._excess:.3g} % over: most gained by "
-                f"{most_gained(robot, self._start_energies)}; lower dt = {robot.dt:g} s"
+                f"{most_gained(robot, self._start_energies)}; lower dt = {robot.dt:g} s, or StiffCable.damping"
             )
 
     def exchange(self, energy: float) -> None:
