@@ -66,7 +66,8 @@ def _relax(model, first, stiffness, pull, stall, out, poses, angles, tensions):
             tensions[c] = min(tension, stall) if 0 <= d < len(pull) else tension
         generalised_forces(model, first, tensions, out, force)
         for i in range(size):
-            velocity[i] = KEPT * velocity[i] + force[i] / inertia[i]
+            if inertia[i] > 0:  # what no spring holds stays
+                velocity[i] = KEPT * velocity[i] + force[i] / inertia[i]
         for b in range(len(poses)):
             at = first[b]
             if model.other_half[b] >= 0 and b > model.other_half[b]:
