@@ -146,6 +146,10 @@ def main() -> None:
         status = 143
     except KeyboardInterrupt:
         status = 130
+    except SystemError as error:  # what compiled code makes of an interrupt that came while it was called
+        if not isinstance(error.__cause__, KeyboardInterrupt):
+            raise
+        status = 143 if isinstance(error.__cause__, _Terminated) else 130
     except BrokenPipeError:
         status = 0
     sys.exit(status)

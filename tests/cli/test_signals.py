@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from tensegym.cli import main
+
 COMMAND = [sys.executable, "-c", "from tensegym.cli.main import main; main()"]
 TASK = """
 [task]
@@ -94,3 +96,15 @@ def test_a_signal_that_a_librarys_callback_swallows_ends_the_command_all_the_sam
     """As where the compiler calls back."""
     done = subprocess.run([sys.executable, "-c", SWALLOWS.format(how=int(how))], capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (status, "swallowed\n", "")
+
+
+@pytest.mark.parametrize(("how", "status"), [(KeyboardInterrupt, 130), (main._Terminated, 143)])
+def test_an_interrupt_that_compiled_code_wraps_ends_the_command_as_any(monkeypatch, how, status):
+    def interrupted(_):
+        raise SystemError("CPUDispatcher returned a result with an exception set") from how()
+
+    monkeypatch.setattr(main, "run", interrupted)
+    monkeypatch.setattr(main.signal, "signal", lambda *_: None)
+    with pytest.raises(SystemExit) as ended:
+        main.main()
+    assert ended.value.code == status
