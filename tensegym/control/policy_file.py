@@ -119,6 +119,8 @@ def write_arrays(arrays: Weights, path: Path) -> None:
 
 def read_arrays(path: Path) -> Weights:
     """Arrays of numbers by name from an npz file. Raises InputError for one that holds anything else, or OSError."""
+    if path.exists() and not path.is_file():  # a device would be read for ever
+        raise InputError(one_line(f"{path} is no file: give one of arrays, as NumPy's savez writes it"))
     try:
         with zipfile.ZipFile(path) as archive:
             if sum(member.file_size for member in archive.infolist()) > _LARGEST:
