@@ -6,6 +6,7 @@ command is imported, so `tensegym --help` stays fast and `tensegym simulate` nev
 
 from __future__ import annotations
 
+import gc
 import importlib
 import signal
 import sys
@@ -146,10 +147,11 @@ def main() -> None:
         status = 143
     except KeyboardInterrupt:
         status = 130
-    except SystemError as error:  # what compiled code makes of an interrupt that came while it was called
+    except (SystemError, ImportError) as error:  # what compiled code, or a library's start, makes of an interrupt
         if not isinstance(error.__cause__, KeyboardInterrupt):
             raise
         status = 143 if isinstance(error.__cause__, _Terminated) else 130
     except BrokenPipeError:
         status = 0
+    gc.freeze()  # else Python looks through all that torch and numba hold once more as it ends, for seconds
     sys.exit(status)

@@ -52,7 +52,7 @@ def as_design(value: str | Path | dict[str, Any] | RobotDesign) -> RobotDesign:
         return design_from_dict(value)
     if str(value).endswith(".toml"):
         return load_design(value)
-    if value not in PRESETS:
+    if str(value) not in PRESETS:
         names = ", ".join(PRESETS)
         raise DesignError(one_line(f"unknown preset {show(str(value))}; one of {names}, or a path that ends in .toml"))
     return PRESETS[str(value)]()

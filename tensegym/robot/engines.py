@@ -11,7 +11,7 @@ from tensegym.bullet import BulletWorld
 from tensegym.bullet.camera import Camera
 from tensegym.engine import Scene, World
 from tensegym.errors import DesignError, SimulationError
-from tensegym.tables import one_line, show
+from tensegym.tables import as_text, one_line, show
 
 TITLES = {"pybullet": "PyBullet", "mujoco": "MuJoCo"}
 ENGINES = tuple(TITLES)
@@ -45,7 +45,7 @@ def open_world(engine: str, scene: Scene, gui: bool = False, compiled: bool | No
 
 def check_engine(engine: str) -> None:
     """Raises DesignError for an engine there is not, SimulationError for one that is not installed."""
-    if engine not in ENGINES:
+    if as_text(engine, "engine", DesignError) not in ENGINES:
         raise DesignError(f"engine = {show(engine)} is not one of {', '.join(ENGINES)}")
     if engine != "pybullet" and not _installed(engine):
         raise SimulationError(f"engine {engine!r} is not installed; it comes with the extra {engine}: "

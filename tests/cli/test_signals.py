@@ -98,10 +98,11 @@ def test_a_signal_that_a_librarys_callback_swallows_ends_the_command_all_the_sam
     assert (done.returncode, done.stdout, done.stderr) == (status, "swallowed\n", "")
 
 
+@pytest.mark.parametrize("wrapped", [SystemError, ImportError])  # of a call of compiled code, of a library's start
 @pytest.mark.parametrize(("how", "status"), [(KeyboardInterrupt, 130), (main._Terminated, 143)])
-def test_an_interrupt_that_compiled_code_wraps_ends_the_command_as_any(monkeypatch, how, status):
+def test_an_interrupt_that_compiled_code_wraps_ends_the_command_as_any(monkeypatch, how, status, wrapped):
     def interrupted(_):
-        raise SystemError("CPUDispatcher returned a result with an exception set") from how()
+        raise wrapped("CPUDispatcher returned a result with an exception set") from how()
 
     monkeypatch.setattr(main, "run", interrupted)
     monkeypatch.setattr(main.signal, "signal", lambda *_: None)

@@ -69,7 +69,8 @@ def lines() -> st.SearchStrategy[list[str]]:
         name, options = command
         words = st.sampled_from(WORDS)
         odd = st.one_of(
-            st.tuples(st.sampled_from([*options, "--no-such", "--json", "--import"]), words).map(list),
+            *3 * [st.tuples(st.sampled_from(options or ["--json"]), words).map(list)],
+            st.tuples(st.sampled_from(["--no-such", "--json", "--import", "--help"]), words).map(list),
             st.sampled_from(options or ["--help"]).map(lambda option: [option]),
             words.map(lambda word: [word]),
         )

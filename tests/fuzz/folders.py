@@ -214,22 +214,21 @@ def read_study(path: Path) -> Any:
     from tensegym.search.report import objective_values
     from tensegym.search.winner import losses_of
 
-    for end in ("-wal", "-shm", "-journal"):
-        path.with_name(path.name + end).unlink(missing_ok=True)
-    (path.parent / "storage.txt").write_text("")
-    problem, store = open_search(path.parent)
-    try:
-        Status(path.parent).run()
+    with tempfile.TemporaryDirectory() as folder:  # a file of its own each time: SQLite knows those that are open
+        shutil.copy(path, folder)
+        (Path(folder) / "storage.txt").write_text("")
+        problem, store = open_search(Path(folder))
+        Status(Path(folder)).run()
         objective_values(problem, store.finished()), losses_of(problem, store.finished()), store.seconds()
         for values, _ in store.finished().values():
             problem.space.apply(values)
-    finally:
-        store.study._storage._backend.engine.dispose()
 
 
 def read_storage(path: Path) -> Any:
     """Where a search is kept, as its folder says."""
     from tensegym.cli.design import open_search
 
-    (path.parent / "study.db").write_bytes(study())
-    open_search(path.parent)
+    with tempfile.TemporaryDirectory() as folder:
+        shutil.copy(path, folder)
+        (Path(folder) / "study.db").write_bytes(study())
+        open_search(Path(folder))

@@ -83,7 +83,7 @@ def fit_measured(
         FlexureError: on an unknown model, states that this hinge cannot have (plausibility.py), fewer states than
             coefficients, states without rotation or load, a potential that is not passive on the states' box.
     """
-    if model not in MODELS:
+    if str(model) not in MODELS:
         raise FlexureError(f"model = {model!r} cannot be fitted to data; one of {', '.join(MODELS)}")
     check_measured(states, length)
     used, rich = states.whole(), None

@@ -22,7 +22,7 @@ DEGREE = 6
 
 def mask_of(symmetry: str) -> NDArray[np.bool_]:
     """(8, DEGREE + 1) which coefficients are fitted. Raises FlexureError."""
-    if symmetry not in SYMMETRIES:
+    if str(symmetry) not in SYMMETRIES:
         raise FlexureError(f"symmetry = {symmetry!r}; one of {', '.join(SYMMETRIES)}")
     mask = np.zeros((len(NAMES), DEGREE + 1), dtype=bool)
     for row, exponents in SYMMETRIES[symmetry].items():

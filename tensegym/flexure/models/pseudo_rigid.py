@@ -82,7 +82,7 @@ def planar_placement(states: States, length: float, reading: str = "dx") -> Plac
         FlexureError: for another reading, too few states, or states that do not turn.
     """
     _sweep(states)
-    if reading not in READINGS:
+    if str(reading) not in READINGS:
         raise FlexureError(f"reading = {reading!r}; one of {', '.join(READINGS)}")
 
     def extent(b: float) -> FloatArray:
