@@ -39,6 +39,8 @@ def open_world(engine: str, scene: Scene, gui: bool = False, compiled: bool | No
     try:
         from tensegym.mujoco.world import MujocoWorld
     except ImportError as error:  # it is there, and does not load
+        if isinstance(error.__cause__, KeyboardInterrupt):
+            raise
         raise SimulationError(one_line(f"engine 'mujoco' does not load: {error}")) from error
     return MujocoWorld(scene, compiled)
 
