@@ -119,8 +119,6 @@ def checkpoint_folder(out: Path, steps: int) -> Path:
 def _publish(checkpoint: Path, out: Path) -> None:
     """Copy a checkpoint to the run's folder, where `evaluate` looks; resuming never reads these copies."""
     for name in (WEIGHTS, SETTINGS, STATE):
-        if (checkpoint / name).exists() and not (checkpoint / name).is_file():  # a device would be read for ever
-            raise InputError(one_line(f"{checkpoint / name} is no file: this checkpoint cannot be gone on from"))
         with replace_path(out / name) as fresh:
             fresh.write_bytes((checkpoint / name).read_bytes())
 

@@ -11,7 +11,7 @@ from tensegym.bullet import BulletWorld
 from tensegym.bullet.camera import Camera
 from tensegym.engine import Scene, World
 from tensegym.errors import DesignError, SimulationError
-from tensegym.tables import as_text, one_line, show
+from tensegym.tables import as_text, show
 
 TITLES = {"pybullet": "PyBullet", "mujoco": "MuJoCo"}
 ENGINES = tuple(TITLES)
@@ -29,19 +29,15 @@ def open_world(engine: str, scene: Scene, gui: bool = False, compiled: bool | No
 
     Raises:
         DesignError: there is no such engine, or it has no window.
-        SimulationError: it is not installed, does not load, has no display, or no compiled substeps though asked for.
+        SimulationError: it is not installed, has no display, or has no compiled substeps and is asked for them.
     """
     check_engine(engine)
     if engine == "pybullet":
         return BulletWorld(scene, gui, compiled)
     if gui:
         raise DesignError(f"engine {engine!r} has no window: take engine='pybullet', or render to rgb_array instead")
-    try:
-        from tensegym.mujoco.world import MujocoWorld
-    except ImportError as error:  # it is there, and does not load
-        if isinstance(error.__cause__, KeyboardInterrupt):
-            raise
-        raise SimulationError(one_line(f"engine 'mujoco' does not load: {error}")) from error
+    from tensegym.mujoco.world import MujocoWorld
+
     return MujocoWorld(scene, compiled)
 
 
