@@ -51,19 +51,19 @@ class Faults:
 
     def strike(self, robot: TensegrityRobot, seconds: float) -> float:
         """What happens at the start of a control step of so many seconds; returns the energy it brings [J]."""
+        snapping = [cable for time, cable in self._snapping if time <= self._clock]
+        pushed = self._disturb.pushes and self._rng.random() < self._disturb.pushes * seconds / 60
+        self._clock += seconds
+        if not (snapping or pushed):
+            return 0.0
         before = robot.energies().total
-        struck = False
-        while self._snapping and self._snapping[0][0] <= self._clock:
-            cable = self._snapping.pop(0)[1]
-            robot.model.spring_params[cable, TWO_WAY] = 0.0
-            robot.natural_lengths[cable] = _SNAPPED
-            struck = True
-        if self._disturb.pushes and self._rng.random() < self._disturb.pushes * seconds / 60:
+        robot.model.spring_params[snapping, TWO_WAY] = 0.0
+        robot.natural_lengths[snapping] = _SNAPPED
+        self._snapping = self._snapping[len(snapping) :]
+        if pushed:
             angle = self._rng.uniform(-np.pi, np.pi)
             robot.push(self._disturb.push * np.array([np.cos(angle), np.sin(angle), 0.0]))
-            struck = True
-        self._clock += seconds
-        return robot.energies().total - before if struck else 0.0
+        return robot.energies().total - before
 
     def as_dict(self) -> dict[str, Any]:
         """What was drawn, in plain types; drives and cables by number from 1."""

@@ -77,8 +77,12 @@ def test_targets_come_from_the_episodes_seed_alone():
 def test_bad_fields_are_named(table, words):
     with pytest.raises(TensegymError, match=words):
         as_task({"motion": "places", **table})
-    with pytest.raises(DesignError):
-        gym.make(ID, task="places", observation="goal")
+
+
+def test_an_observation_that_there_is_not_is_named():
+    for observation in ("goal", ["full-goal"]):
+        with pytest.raises(DesignError, match=r"observation = .* is not one of full, onboard, full-goal, onboard-goal"):
+            gym.make(ID, task="places", observation=observation)
 
 
 @pytest.mark.parametrize("name", ["Steer", "Places", "Path"])
