@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[1]
 SHELVES = (  # each may import from itself and from those before it
     "errors", "arrays", "files", "compiled", "tables", "report", "plotting", "processes",
     "flexure", "structure", "design", "physics", "engine", "bullet", "mujoco", "robot", "flexible", "control", "tasks",
-    "envs", "urdf", "train", "search", "compare", "validation", "tensegym", "cli", "__main__",
+    "envs", "urdf", "replay", "train", "search", "compare", "validation", "tensegym", "cli", "__main__",
 )  # fmt: skip
 ENGINES = {"pybullet": "bullet", "pybullet_data": "bullet", "mujoco": "mujoco"}  # and the one shelf that imports each
 MEMORY = ("ctypes", "llvmlite.binding")  # C interfaces, and what engines hold

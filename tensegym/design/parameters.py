@@ -107,6 +107,11 @@ class Drive(Checked, error=DesignError):
     position_gain: float = bounded(0, 1e3, 1.25, "V/rad", "controller: voltage a radian of rotor error", open_low=True)
     velocity_gain: float = bounded(0, 10, 0.0, "V s/rad", "controller: voltage taken off a rad/s of rotor speed")
 
+    @property
+    def torque_limit(self) -> float:
+        """What the spool winds against at the current limit, the gear's losses taken off [N m]."""
+        return self.current_limit * self.torque_constant * self.gear_ratio * self.gear_efficiency
+
 
 @dataclass(frozen=True)
 class Payload(Checked, error=DesignError):
