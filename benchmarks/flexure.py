@@ -158,7 +158,7 @@ def main() -> None:
         print("60-point sweep to 30 deg for the same accuracy, exudyn against our FEM")
         print(table(header, rows))
     except ImportError:
-        print("exudyn is not installed (pip install tensegym[dev]): its comparison is left out")
+        print("exudyn is not installed (pip install exudyn): its comparison is left out")
     rows = []
     for name in PAPER_HINGES:
         hinge = preset(name)

@@ -336,7 +336,7 @@ def main() -> None:
     try:
         tables["1 s of the leaf spring's arm beside exudyn's beam, CPU"] = exudyn_rows(leaf)
     except ImportError:
-        print("exudyn is not installed (pip install tensegym[dev]): its comparison is left out")
+        print("exudyn is not installed (pip install exudyn): its comparison is left out")
     for title, rows in tables.items():
         show(title, rows)
     if arguments.json:

@@ -34,7 +34,7 @@ PLACES = {  # of each shelf: column, row from below, what stands there
     "validation": (2.5, 7.0, "closed forms"),
     "cli": (2.6, 10.2, "commands"),
 }
-TOOLS = ("errors", "arrays", "files", "compiled", "tables", "report", "plotting", "processes")
+TOOLS = ("errors", "arrays", "files", "compiled", "tables", "report", "plotting", "progress", "processes")
 WALKS = {  # the shelves that a walk enters, in order, as docs/architecture.md tells them
     "one action": ("#1f77b4", ("envs", "tasks", "robot", "engine", "physics", "bullet")),
     "one hinge": ("#2ca02c", ("cli", "flexure", "flexible")),

@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 SHELVES = (  # each may import from itself and from those before it
-    "errors", "arrays", "files", "compiled", "tables", "report", "plotting", "processes",
+    "errors", "arrays", "files", "compiled", "tables", "report", "plotting", "progress", "processes",
     "flexure", "structure", "design", "physics", "engine", "bullet", "mujoco", "robot", "flexible", "control", "tasks",
     "envs", "urdf", "replay", "train", "search", "compare", "validation", "tensegym", "cli", "__main__",
 )  # fmt: skip
@@ -124,7 +124,7 @@ def test_only_an_engines_shelf_touches_it_and_its_memory():
 
 HOMES = {
     "matplotlib": {"plotting"}, "optuna": {"search"}, "ray": {"search"}, "torch": {"control", "train"},
-    "tyro": {"cli", "train"},
+    "tqdm": {"progress"}, "tyro": {"cli", "train"},
 }  # fmt: skip
 
 

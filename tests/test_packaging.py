@@ -84,6 +84,18 @@ def test_every_pybullet_call_names_its_client():
     assert nameless == []
 
 
+def test_the_package_runs_as_a_module_from_anywhere(tmp_path):
+    done = subprocess.run([sys.executable, "-m", "tensegym", "--version"], capture_output=True, text=True, cwd=tmp_path)
+    assert (done.returncode, done.stdout.strip()) == (0, tensegym.__version__)
+
+
+def test_no_hint_names_an_index_that_has_no_such_package():
+    """The package is installed from its sources: `pip install tensegym` finds nothing, or another one."""
+    hint = re.compile(r"pip install '?tensegym")
+    paths = [p for top in ("tensegym", *LINKED, "benchmarks") for p in (ROOT / top).rglob("*.py")]
+    assert [p for p in [*paths, *ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")] if hint.search(p.read_text())] == []
+
+
 @pytest.mark.parametrize("command", ["simulate", "validate", "step"])
 def test_commands_without_learning_load_none(command):
     from tensegym.cli.main import COMMANDS

@@ -1,4 +1,16 @@
-"""Hyperparameters as data: YAML files under train/configs, checked where they are read."""
+"""A training as data: a YAML file, checked where it is read. What is left out keeps its default.
+
+    env_id: tensegym/SixRodRolling-v0
+    env:                            # arguments of the environment, as gym.make takes them
+      observation: onboard
+      design: robot.toml            # or its fields here, as in a design file
+      reward: {slip: 0.15}
+    start: onboard                  # begin as this policy: a shipped one, or a run's folder
+    episode_seconds: 20.0
+    n_envs: 8
+    steps: 160000
+    hidden: [256, 256]
+"""
 
 from __future__ import annotations
 
@@ -17,18 +29,19 @@ from tensegym.tables import Checked, bounded, fill, in_file, noted, one_line, pa
 class TrainConfig(Checked, error=InputError):
     """One training: the environment's arguments, PPO's and the policy's.
 
-    steps: environment steps in all. rollout: steps of each environment between two updates. chunk: updates between
-    two checkpoints; environments and random generators start afresh from (seed, steps done) at each, which is what
-    makes a resumed training equal one that was never killed. start: a policy, shipped or a run's folder, whose networks
-    and running statistics the training begins with; see start_policy.
+    steps: environment steps in all, rounded up to whole updates of n_envs x rollout. rollout: steps of each
+    environment between two updates. chunk: updates between two checkpoints; environments and random generators start
+    afresh from (seed, steps done) at each, which is what makes a resumed training equal one that was never killed.
+    start: a policy, shipped or a run's folder, whose networks and running statistics the training begins with; see
+    start_policy.
     """
 
     env_id: str = noted("tensegym/SixRodRolling-v0", "the environment's name in Gymnasium's registry")
-    env: dict[str, Any] = field(default_factory=dict)
+    env: dict[str, Any] = field(default_factory=dict, metadata={"what": "arguments of the environment"})
     start: str | None = noted(None, "a policy to begin with")
     episode_seconds: float = bounded(0, 3600, 20.0, "s", "length of an episode", open_low=True)
     n_envs: int = bounded(1, 4096, 8, "", "environments side by side")
-    steps: int = bounded(1, 10**12, 320_000, "", "environment steps in all")
+    steps: int = bounded(1, 10**12, 320_000, "", "environment steps in all, rounded up to whole updates")
     rollout: int = bounded(1, 10**6, 100, "", "steps of each environment between two updates")
     chunk: int = bounded(1, 10**6, 8, "", "updates between two checkpoints")
     batch_size: int = bounded(1, 10**9, 200, "", "steps of a gradient step")
@@ -59,6 +72,11 @@ class TrainConfig(Checked, error=InputError):
     def rollout_steps(self) -> int:
         """Environment steps an update."""
         return self.n_envs * self.rollout
+
+    @property
+    def whole_steps(self) -> int:
+        """Environment steps that are done for the ``steps`` asked for: whole updates."""
+        return -(-self.steps // self.rollout_steps) * self.rollout_steps
 
     def as_dict(self) -> dict[str, Any]:
         return asdict(self) | {"hidden": list(self.hidden)}

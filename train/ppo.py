@@ -6,7 +6,6 @@ random generators seeded by (seed, steps done), with fresh episodes. So killing 
 
 from __future__ import annotations
 
-import sys
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -19,11 +18,11 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.logger import configure
 from stable_baselines3.common.utils import set_random_seed
 from stable_baselines3.common.vec_env import VecMonitor, VecNormalize
-from tqdm import tqdm
 
 from tensegym.envs import CONTROL_PERIOD
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
+from tensegym.progress import progress_bar
 
 from .checkpoint import checkpoint_folder, go_back, read_training, write_checkpoint
 from .config import TrainConfig
@@ -74,12 +73,12 @@ def train(config: TrainConfig, out: Path, state: TrainState) -> int:
         go_back(out, state)
         model.set_logger(configure(str(out / "tensorboard"), ["tensorboard", "csv"]))
         metric = workers.get_attr("task")[0].goal.metric
-        chunk_steps = config.chunk * config.rollout_steps
-        with tqdm(total=config.steps, initial=state.steps, unit="step", desc=out.name, file=sys.stderr) as bar:
+        with progress_bar(total=config.whole_steps, initial=state.steps, unit="step", desc=out.name) as bar:
             while state.steps < config.steps:
                 began = time.perf_counter()
                 _start_chunk(model, env, config, seed, state.steps)
-                model.learn(chunk_steps, callback=Watch(bar, out, state, metric), reset_num_timesteps=False)
+                chunk = min(config.chunk * config.rollout_steps, config.whole_steps - state.steps)
+                model.learn(chunk, callback=Watch(bar, out, state, metric), reset_num_timesteps=False)
                 seconds = state.seconds + time.perf_counter() - began
                 state = replace(state, steps=model.num_timesteps, seconds=seconds)
                 write_checkpoint(model, env, out, state)

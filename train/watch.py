@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 from stable_baselines3.common.callbacks import BaseCallback
-from tqdm import tqdm
 
 from tensegym.files import replace_file
 
@@ -21,7 +20,7 @@ from .state import TrainState
 class Watch(BaseCallback):
     """Progress bar, and one row of curve.csv an update from the episodes that ended in it."""
 
-    def __init__(self, bar: tqdm, out: Path, state: TrainState, metric: str) -> None:
+    def __init__(self, bar: Any, out: Path, state: TrainState, metric: str) -> None:
         super().__init__()
         self.bar, self.state, self.path = bar, state, out / CURVE
         self.began = time.perf_counter()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from dataclasses import dataclass
 from datetime import timedelta
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import Any
 from tensegym.design.design_file import design_from_dict
 from tensegym.errors import InputError
 from tensegym.files import lock_folder, write_text
+from tensegym.progress import progress_bar
 from tensegym.report import Report, table
 from tensegym.robot.engines import check_engine
 from tensegym.search.evaluate import TrialResult
@@ -48,11 +48,9 @@ class _Search:
         check_workers(self.workers, self.address)
 
     def _go(self, problem: Problem, store: Store, pool: Workers, budget: int, out: Path) -> Report:
-        from tqdm import tqdm
-
         store.note("budget", budget)
         done = store.finished()
-        with tqdm(total=budget, initial=len(done), unit="trial", file=sys.stderr, smoothing=0.05) as bar:
+        with progress_bar(total=budget, initial=len(done), unit="trial", smoothing=0.05) as bar:
             best = max((_score(problem, o) for _, o in done.values()), default=float("-inf"))
 
             def progress(outcome: TrialResult) -> None:

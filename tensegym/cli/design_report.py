@@ -54,5 +54,6 @@ class DesignReport:
         shown = {"goal_metric_mean": f"{problem.task.goal.metric}, mean"} | _SHOWN
         rows = [[name, *(column[key] for key in shown)] for name, column in data["confirmed"].items()]
         header = ["", *shown.values()]
-        text = table(header, rows) + f"\ngoal {data['goal']}: {'met' if data['goal_met'] else 'not met'}"
+        gains = "".join(f"\n{each['text']}" for each in data["gains"])
+        text = table(header, rows) + f"{gains}\ngoal {data['goal']}: {'met' if data['goal_met'] else 'not met'}"
         return Report(f"{text}\n{self.folder / 'report.md'}", data)

@@ -38,7 +38,7 @@ class Evaluate:
     """A motion (roll, climb, cross, step, steer, places, path) or a TOML file with a [task] table, in place of the
     policy's own task."""
     disturb: Path | None = None
-    """A TOML file of what goes otherwise than designed, as in mass = 0.2 (see tensegym.tasks.disturbance); default: as
+    """A TOML file of what goes otherwise than designed, as in mass = 0.2 (`tensegym fields disturbance`); default: as
     in the training."""
     seconds: Annotated[float, Within(1.0, 3600.0, "s")] | None = None
     """Length of an episode [s]; default: 20, or the given task's own."""

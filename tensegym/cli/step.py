@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -14,6 +13,7 @@ from tensegym.control.walker import save_table
 from tensegym.design.design_file import as_design
 from tensegym.errors import InputError, SimulationError
 from tensegym.plotting import require_matplotlib
+from tensegym.progress import progress_bar
 from tensegym.report import Report, table
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.robot.standing import Verdict, standing_verdict
@@ -99,9 +99,7 @@ class Step:
         raise SimulationError(f"no {what} tips the robot from {where} at depth {self.depth:g}")
 
     def _table(self, robot: TensegrityRobot, verdict: Verdict) -> Report:
-        from tqdm import tqdm
-
-        with tqdm(desc="pulls", unit="pull", file=sys.stderr) as bar:
+        with progress_bar(desc="pulls", unit="pull") as bar:
             def progress(done: int, total: int) -> None:
                 bar.total = total
                 bar.update(done - bar.n)

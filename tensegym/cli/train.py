@@ -39,7 +39,8 @@ class Train:
     seed: Seed = 0
     """Seed of the networks, the episodes and the exploration."""
     steps: Count | None = None
-    """Environment steps in all, in place of the config's; with --resume, a longer schedule to go on with."""
+    """Environment steps in all, in place of the config's, rounded up to whole updates (800 steps of most configs); with
+    --resume, a longer schedule to go on with."""
     resume: bool = False
     """Go on from the folder's last checkpoint, with its own config and seed."""
 
@@ -55,7 +56,10 @@ class Train:
         best = max((row["speed_lps"] for row in rows), default=None)
         data = {"out": str(out), "seed": state.seed, "steps": steps, "best_median_speed_lps": best,
                 "last": rows[-1] if rows else {}}  # fmt: skip
-        return Report(table(["run", "steps", "best median speed L/s"], [[str(out), steps, best]]), data)
+        text = table(["run", "steps", "best median speed L/s"], [[str(out), steps, best]])
+        if steps != config.steps:
+            text += f"\n{config.steps} steps were asked for; whole updates of {config.rollout_steps} are made"
+        return Report(text, data)
 
     def _begin(self, out: Path) -> tuple[TrainConfig, TrainState]:
         """A new run's folder; nothing is written before all of it has been looked at."""

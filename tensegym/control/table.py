@@ -88,7 +88,7 @@ class _RandomSettings:
     period: float = bounded(1e-3, 60, 0.4, "s", "a command is held for this long")
 
 
-_KINDS: dict[str, tuple[type[Any], frozenset[str]]] = {
+KINDS: dict[str, tuple[type[Any], frozenset[str]]] = {
     # the parameters of each kind, and what its table may hold besides
     "cpg": (Cpg, frozenset({"policy"})),
     "walker": (WalkerSettings, frozenset({"tips", "period"})),
@@ -102,9 +102,9 @@ def _parsed(table: Mapping[str, Any]) -> tuple[str, Any]:
     """Kind and parameters."""
     table = without_version(dict(table), "the controller's table")  # as best/controller.toml of a search has one
     kind = table.get("kind", "cpg")
-    if not isinstance(kind, str) or kind not in _KINDS:
-        raise DesignError(f"controller kind = {show(kind)} is not one of {', '.join(_KINDS)}")
-    parameters, besides = _KINDS[kind]
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise DesignError(f"controller kind = {show(kind)} is not one of {', '.join(KINDS)}")
+    parameters, besides = KINDS[kind]
     for name in besides & table.keys() - {"period"}:
         as_text(table[name], f"controller {name}", DesignError)
     if "period" in besides & table.keys():

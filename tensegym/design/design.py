@@ -32,7 +32,8 @@ class RobotDesign:
     Raises DesignError or StructureError, naming field, value and allowed range.
     """
 
-    structure: Structure = field(default_factory=structures.six_rod)
+    structure: Structure = field(default_factory=structures.six_rod,
+                                 metadata={"what": "nodes, rods and cables, or the size of six rods"})  # fmt: skip
     name: str = noted("six_rod", "of the robot")
     form_finding: bool = noted(True, "move the nodes so that the pretension balances; else they must balance as given")
     passive_rod: Rod = noted(Rod(), "rods without drives")

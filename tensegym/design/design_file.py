@@ -4,7 +4,7 @@
     [structure]                   # optional: rod_length and spacing [m] of the six rods, or nodes, rods, cables,
     rod_length = 0.8              # stiff_cables of any class-1 structure
     [elastic_cable]
-    stiffness = 400.0             # SI units, named as the fields of tensegym.design.design
+    stiffness = 400.0             # SI units; `tensegym fields design` lists all fields
     [payload]                     # a section makes one; leave it out for none
     [flexure]                     # likewise: rods split by a flexure hinge
 """
@@ -79,7 +79,7 @@ def design_from_dict(data: dict[str, Any]) -> RobotDesign:
 
 
 @dataclass(frozen=True)
-class _SixRods(Checked, error=DesignError):
+class SixRods(Checked, error=DesignError):
     """The six-rod structure by its size."""
 
     rod_length: float = bounded(ROD_LENGTHS.low, ROD_LENGTHS.high, PAPER_ROD_LENGTH, "m", "of all six rods")
@@ -88,7 +88,7 @@ class _SixRods(Checked, error=DesignError):
 
 def _structure(data: Any, base: Structure) -> Structure:
     if isinstance(data, dict) and {"rod_length", "spacing"} & data.keys():
-        size = fill(_SixRods, data, "structure", DesignError)
+        size = fill(SixRods, data, "structure", DesignError)
         return six_rod(size.rod_length, size.spacing)
     known(data, ("nodes", *_MEMBERS), "structure", DesignError)
     parts: dict[str, Any] = {name: getattr(base, name) for name in ("nodes", *_MEMBERS)}

@@ -35,16 +35,16 @@ MODELS = ("potential", "planar", "torsion")
 
 
 @dataclass(frozen=True)
-class _Section(Checked, error=FlexureError):
+class Section(Checked, error=FlexureError):
     """A [[flexure]] section; what its fields mean is said above."""
 
-    joint: str
-    hinge: str | None = None
-    fit: str | None = None
+    joint: str = noted(what="the revolute joint it takes the place of")
+    hinge: str | None = noted(None, "a preset, or a hinge's TOML file")
+    fit: str | None = noted(None, "a file of `tensegym flexure fit`; without it the hinge is fitted now")
     model: str = choice(*MODELS, what="which of the fitted models")
     along: tuple[float, float, float] | None = noted(None, "the hinge's x in the joint's frame, across the axis")
     centre: float = noted(0.5, "where on the hinge's length the joint's axis is")
-    loss_time_s: float = noted(0.0, "structural damping over stiffness")
+    loss_time_s: float = noted(0.0, "structural damping over stiffness [s]")
     out_of_plane: tuple[float, float, float] | None = noted(None, "N/m along z, N m/rad about y and x")
 
 
@@ -62,7 +62,7 @@ def load_robot(path: str | Path, **options: Any) -> FlexibleRobot:
             raise FlexureError(f"urdf = {show(data.get('urdf'))}; give the name of a URDF file")
         if not isinstance(data.get("flexure"), list) or not data["flexure"]:
             raise FlexureError("there is no flexure; add a [[flexure]] section")
-        sections = [fill(_Section, table, f"flexure {i + 1}", FlexureError) for i, table in enumerate(data["flexure"])]
+        sections = [fill(Section, table, f"flexure {i + 1}", FlexureError) for i, table in enumerate(data["flexure"])]
         fitted = [_fitted(path, section) for section in sections]
     urdf = path.parent / data["urdf"]
     robot = FlexibleRobot(urdf if urdf.is_file() else packaged_urdf(data["urdf"]) or urdf, **options)
@@ -78,7 +78,7 @@ def load_robot(path: str | Path, **options: Any) -> FlexibleRobot:
     return robot
 
 
-def _fitted(path: Path, section: _Section) -> Joint:
+def _fitted(path: Path, section: Section) -> Joint:
     """The joint of one section, read or fitted. Raises FlexureError."""
     named, fit = section.hinge, section.fit
     if named is None and fit is None:

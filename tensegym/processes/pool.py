@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pickle
-import sys
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
@@ -13,6 +12,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from tensegym.errors import InputError
+from tensegym.progress import progress_bar
 
 from .worker import Worker, WorkerDied, cores
 
@@ -128,9 +128,7 @@ def _here(function: Callable[[Item], Result], items: list[Item]) -> Iterator[Res
 
 
 def _with_bar(results: Iterator[Result], total: int, bar: str, unit: str) -> Iterator[Result]:
-    from tqdm import tqdm
-
-    with tqdm(total=total, desc=bar, unit=unit, file=sys.stderr) as shown:
+    with progress_bar(total=total, desc=bar, unit=unit) as shown:
         for result in results:
             shown.update()
             yield result

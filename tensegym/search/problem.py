@@ -1,8 +1,8 @@
 """A search as written in a TOML file: task, start design, controller, space, and how to search.
 
-    task = "carry"                                          # or a [task] table, see tensegym.tasks.task
+    task = "carry"                                          # a motion, or a [task] table
     [design]                                                # where the search begins, as a design file
-    [controller]                                            # see tensegym.control.table
+    [controller]                                            # kind = "cpg", "walker", "policy", ...
     [space]
     "design.elastic_cable.stiffness" = {low = 200.0, high = 800.0, log = true}
     "controller.feedback" = {spread = 1.0}                  # every entry, this far about its start

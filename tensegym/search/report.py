@@ -20,7 +20,7 @@ from tensegym.design.urdf_writer import urdf_files
 from tensegym.files import VERSION, replace_path, write_text
 from tensegym.robot.standing import standing_verdict
 
-from .confirm import FIRST_SEED, TIME_STEP, Confirmed, summary
+from .confirm import FIRST_SEED, TIME_STEP, Confirmed, gain, summary
 from .figures import draw_best_gait, draw_importance, draw_pareto, draw_progress
 from .problem import Problem
 from .store import Finished, Store
@@ -108,10 +108,13 @@ def write_report(
         f"{who}, {1e3 * dt:g} ms": {"goal_metric_mean": float(np.mean([row[goal] for row in rows]))} | summary(rows)
         for (who, dt), rows in confirmed.rows.items()
     }
+    gains = [gain(confirmed.rows["start", TIME_STEP], found, metric)
+             for metric in dict.fromkeys((objectives[0].metric, goal, "speed_lps"))]  # fmt: skip
     verdict = standing_verdict(design, problem.task.engine)
     met = problem.task.goal.violation({k: float(np.mean([r[k] for r in found])) for k in found[0]}) <= 0
     data = {"folder": str(folder), "goal": str(problem.task.goal), "goal_met": met, "trial": confirmed.number,
             "trials": len(finished), "seconds": store.seconds(), "confirmed": columns, "importance": shares,
+            "gains": [each._asdict() | {"text": each.text} for each in gains],
             "standing": verdict.as_dict(), "stands": verdict.text,
             "best_so_far": {name: _last_best(c, objectives[0].maximise) for name, c in curves.items()}}  # fmt: skip
     write_text(folder / "report.md", "\n".join(_lines(problem, store, values, data, pictures)) + "\n")
@@ -134,6 +137,9 @@ def _lines(problem: Problem, store: Store, values: dict[str, Any], data: dict[st
     yield ""
     shown_rows = {"goal_metric_mean": f"{problem.task.goal.metric}, mean"} | _ROWS
     yield from _table(["", *columns], [[what, *(c[key] for c in columns.values())] for key, what in shown_rows.items()])
+    yield ""
+    yield (f"Beside the start, at {1e3 * TIME_STEP:g} ms from the same starts, mean of the differences [95 %]: "
+           f"{'; '.join(each['text'] for each in data['gains'])}.")  # fmt: skip
     yield ""
     if len(data["best_so_far"]) > 1:
         yield from _table(["search", f"best {settings.objectives[0]}, as searched"], list(data["best_so_far"].items()))

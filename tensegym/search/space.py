@@ -1,7 +1,7 @@
 """The search space: which fields of the design and the controller vary, and how far.
 
     [space]
-    design = "payload_body"                                 # ranges by name, see tensegym/design/ranges.toml
+    design = "payload_body"                                 # ranges by name
     "design.elastic_cable.stiffness" = {low = 200.0, high = 800.0, log = true}
     "controller.feedback" = {spread = 1.0}                  # every entry, this far about its start
     "design.payload.two_way" = {choices = [false, true]}

@@ -135,13 +135,19 @@ def describe(kind: type[Any]) -> list[FieldRow]:
         allowed = str(meta["range"]) if "range" in meta else ", ".join(meta.get("choices", ()))
         default = "" if f.default is MISSING and f.default_factory is MISSING else "none"
         if f.default is not MISSING and f.default is not None:
-            default = f"{f.default:g}" if isinstance(f.default, float) else str(f.default)
-        if f.default_factory is not MISSING or any(is_dataclass(k) for k in _alternatives(of)):
+            default = _shown(f.default)
+        if f.default_factory is not MISSING or ("read" not in meta and any(map(is_dataclass, _alternatives(of)))):
             default = "see there"
         if bool in _alternatives(of):
             allowed, default = "true, false", default.lower()
         rows.append(FieldRow(f.name, default, meta.get("unit", ""), allowed, meta.get("what", "")))
     return rows
+
+
+def _shown(default: Any) -> str:
+    if isinstance(default, tuple):
+        return ", ".join(map(_shown, default)) or "none"
+    return f"{default:g}" if isinstance(default, float) else str(default)
 
 
 def _find_declared(kind: Any) -> tuple[tuple[Field[Any], Any], ...]:

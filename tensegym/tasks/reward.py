@@ -15,7 +15,7 @@ class RewardWeights(Checked, error=DesignError):
     """What counts how much."""
 
     progress: float = bounded(0, 1e3, 1.0, "", "per rod length of the centre of mass along the wanted direction")
-    slip: float = bounded(0, 1e3, 0.3, "", "per rod length of the path of the grounded feet's centres, their mean")
+    slip: float = bounded(0, 1e3, 0.15, "", "per rod length of the path of the grounded feet's centres, their mean")
     energy: float = bounded(0, 1e3, 2e-4, "1/J", "of what the drives draw")
     arrive: float = bounded(0, 1e3, 0.0, "", "per place reached, where there are places")
 

@@ -31,6 +31,7 @@ def test_run_status_resume_report(cli, tiny_file, tmp_path):
     found = report["confirmed"]["found, 2 ms"]
     assert found["goal_metric_mean"] == pytest.approx(found["speed_lps_mean"], abs=0)  # the goal is one of speed
     text = (out / "report.md").read_text()
+    assert report["gains"][0]["text"] in text and " the start's: " in text
     assert "| speed_lps, mean |" in text
     assert "design.elastic_cable.pretension" in text and "![gait" in text
     for name in ("progress.png", "gait.png", "best/design.toml", "best/controller.toml", "best/urdf/payload.urdf"):

@@ -19,6 +19,7 @@ from tensegym.control.policy import load_policy
 from tensegym.control.policy_file import read_arrays, read_policy
 from tensegym.envs.rolling import RollingEnv
 from tensegym.errors import InputError
+from tensegym.tasks.reward import RewardWeights
 from tensegym.train.ship import Ship
 from tensegym.train.state import read_state
 from tests.conftest import assert_refused
@@ -90,6 +91,16 @@ def test_a_run_killed_in_its_second_chunk_and_resumed_equals_one_that_was_not(ti
     status, _, _ = cli("train", "--resume", "--out", out)
     assert status == 0
     assert_same(out, tiny_run)
+
+
+def test_steps_are_rounded_up_to_whole_updates_and_no_further(tiny_config, tmp_path, cli):
+    """An update is of 20 steps and a chunk of one of them here; of two, the last one is cut short."""
+    config = yaml.safe_load(tiny_config.read_text()) | {"chunk": 2, "steps": 50}
+    (tmp_path / "c.yaml").write_text(yaml.safe_dump(config))
+    status, output, _ = cli("train", "--config", tmp_path / "c.yaml", "--out", tmp_path / "run")
+    assert status == 0
+    assert "50 steps were asked for; whole updates of 20 are made" in output
+    assert {p.name for p in (tmp_path / "run" / "checkpoints").iterdir()} == {"000000040", "000000060"}
 
 
 def test_a_kill_amid_writing_is_resumed_from_the_last_whole_checkpoint(tiny_run, tmp_path, cli):
@@ -210,6 +221,7 @@ def test_the_committed_configs_are_sound(name):
     env = make_env(config)
     assert env.spec.max_episode_steps * config.env["control_period"] == pytest.approx(config.episode_seconds)
     assert config.rollout_steps % config.batch_size == 0
+    assert env.unwrapped.task.reward == RewardWeights()  # what gym.make weighs is what the shipped policies learned by
     env.close()
 
 

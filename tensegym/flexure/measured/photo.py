@@ -23,7 +23,7 @@ def _pillow(module: str) -> Any:
     try:
         return importlib.import_module(f"PIL.{module}")
     except ImportError as error:
-        raise FlexureError("reading pictures needs Pillow: pip install pillow, or tensegym[train]") from error
+        raise FlexureError("reading pictures needs Pillow: pip install pillow") from error
 
 
 def read_grey(path: Path) -> FloatArray:
