@@ -35,7 +35,8 @@ class Fit:
     out: Path
     """JSON file to write."""
     hinge: tyro.conf.Positional[str] = ""
-    """A preset (x-hinge, leaf-spring, trls2, tfch, cross-spring, parallel-guide) or a TOML file."""
+    """A preset (x-hinge, leaf-spring, trls2, tfch, cross-spring, parallel-guide, tapered-leaf, notch-hinge), or a TOML
+    file."""
     data: Path | None = None
     """CSV of an experiment: angle_deg, x_mm, y_mm and force_N (at the arm's end, across the undeformed arm), or
     Fx_N and Fy_N there, or torque_Nmm. Without HINGE, --length-mm (40) and --arm-mm (120) tell the lengths."""

@@ -11,7 +11,7 @@ from tensegym.errors import InputError
 from tensegym.flexure.hinge import PRESETS, Hinge, as_hinge, preset
 from tensegym.flexure.hinge.presets import MM
 
-_LENGTHS = ("length", "height", "width", "thickness", "rib", "arm")
+_LENGTHS = ("length", "height", "width", "thickness", "end_thickness", "radius", "depth", "rib", "arm")
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,13 @@ class HingeOptions:
     width_mm: Annotated[float, Within(0.0, 1e5, "mm")] | None = None
     """Presets: width W out of plane."""
     thickness_mm: Annotated[float, Within(0.0, 1e5, "mm")] | None = None
-    """Presets: thickness t of every leaf."""
+    """Presets: thickness t of every leaf; of a taper at the ground, of a notch at its web."""
+    end_thickness_mm: Annotated[float, Within(0.0, 1e5, "mm")] | None = None
+    """tapered-leaf: thickness at the tip."""
+    radius_mm: Annotated[float, Within(0.0, 1e5, "mm")] | None = None
+    """notch-hinge: extent of a fillet along the web, at most L/2 (the default: no straight web)."""
+    depth_mm: Annotated[float, Within(0.0, 1e5, "mm")] | None = None
+    """notch-hinge: extent of a fillet across the web; the default, the radius, makes circles."""
     rib_mm: Annotated[float, Within(0.0, 1e5, "mm")] | None = None
     """trls2: extent of a rib along the leaf."""
     crossing: Annotated[float, Within(0.0, 1.0)] | None = None

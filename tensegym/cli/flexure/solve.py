@@ -14,6 +14,7 @@ from tensegym.arrays import FloatArray
 from tensegym.cli.options import Within
 from tensegym.errors import InputError
 from tensegym.files import check_file, replace_file
+from tensegym.flexure.fem.mesh_error import too_coarse_for
 from tensegym.flexure.hinge import Hinge
 from tensegym.flexure.models.joint import MODELS, Joint
 from tensegym.flexure.models.joint_file import load_joint
@@ -80,14 +81,21 @@ class Solve:
                 return solve_model(joint.model(self.model), joint.box, loads), _told(joint)
             if joint.hinge is None:
                 raise InputError(f"{self.joint} was fitted to data and holds no hinge: the model fem needs one")
-            return solve_fem(joint.hinge, loads, self.elements), joint.source
+            source = _meshed(joint.hinge, joint.source, loads, self.elements)
+            return solve_fem(joint.hinge, loads, self.elements), source
         assert self.hinge is not None
         hinge: Hinge = self.options.apply(self.hinge)
         if self.model == "fem":
-            return solve_fem(hinge, loads, self.elements), hinge.describe()
+            return solve_fem(hinge, loads, self.elements), _meshed(hinge, hinge.describe(), loads, self.elements)
         joint = fit_joint(hinge, max_angle=self.box.max_angle, max_force=self.box.max_force_N, held_out=0,
                           elements=self.elements)  # fmt: skip
         return solve_model(joint.model(self.model), joint.box, loads), _told(joint)
+
+
+def _meshed(hinge: Hinge, source: str, loads: FloatArray, elements: int) -> str:
+    """The source, and whether the mesh is too coarse for the largest loads."""
+    note = too_coarse_for(hinge, loads[np.unique(np.abs(loads).argmax(axis=0))], elements)
+    return f"{source}\nnote: {note}" if note else source
 
 
 def _told(joint: Joint) -> str:

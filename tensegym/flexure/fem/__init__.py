@@ -6,7 +6,7 @@ length L. Planar; leaves bend by Euler and Bernoulli (no shear), bodies are rigi
 
     equilibrium.py   rotate (rotation control), apply_wrench (load and wrench control), arm_direction
     solution.py      Solution: the states, or why one is missing
-    mesh.py          Mesh: a hinge as flat arrays
+    mesh.py          Mesh: a hinge as flat arrays; mesh_error.py: how far it is off, and which mesh would do
     beam.py          the element's energy, gradient and Hessian; chain.py: one leaf condensed to its ends
     assembly.py      all leaves and bodies together; memory.py: state and workspace; ldl.py: the factorisation
     newton.py        one load case; path.py: from case to case, no instability stepped over

@@ -19,8 +19,8 @@ def strain_energy(mesh, mem):
         real = mesh.real[m]
         for i in range(first, first + count):
             one, two = mem.nodes[i], mem.nodes[i + 1]
-            total += energy(two[0] - one[0], two[1] - one[1], one[2], two[2], real[L0], real[COS], real[SIN], real[EA],
-                            real[EI])  # fmt: skip
+            total += energy(two[0] - one[0], two[1] - one[1], one[2], two[2], real[L0], real[COS], real[SIN],
+                            mesh.pieces[i, EA], mesh.pieces[i, EI])  # fmt: skip
     return total
 
 
@@ -36,8 +36,8 @@ def assemble(mesh, mem):
         a, b, count, first = mesh.ends[m]
         real = mesh.real[m]
         last = first + count + 1
-        negative += condense(mem.nodes[first:last], mem.axial[first:last], real, count, a == 0, mem.strains[first:last],
-                             mem.back[first : last + 1], mem.blocks, mem.loads)  # fmt: skip
+        negative += condense(mem.nodes[first:last], mem.axial[first:last], real, mesh.pieces[first:last], count, a == 0,
+                             mem.strains[first:last], mem.back[first : last + 1], mem.blocks, mem.loads)  # fmt: skip
         ca, sa, cb, sb = (math.cos(mem.poses[a, 2]), math.sin(mem.poses[a, 2]), math.cos(mem.poses[b, 2]),
                           math.sin(mem.poses[b, 2]))  # fmt: skip
         ax, ay = ca * real[AX] - sa * real[AY], sa * real[AX] + ca * real[AY]

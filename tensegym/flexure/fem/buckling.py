@@ -55,7 +55,7 @@ def buckling_load(hinge: Hinge, before: float, after: float, elements: int = ELE
     stable, trial = memory(mesh), memory(mesh)
     # an Euler column of the softest leaf, far longer than the rod, stands under this
     rod, modulus = before + hinge.length + after, hinge.material.effective_modulus
-    high = min(modulus * leaf.width * leaf.thickness**3 for leaf in hinge.leaves) / (100 * rod * rod)
+    high = min(modulus * leaf.width * leaf.thinnest**3 for leaf in hinge.leaves) / (100 * rod * rod)
     low = 0.0
     for _ in range(DOUBLINGS):
         copy_state(stable, trial)

@@ -7,10 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from tensegym.arrays import FloatArray, IntArray
-from tensegym.flexure.hinge import GROUND, TIP, Hinge
+from tensegym.flexure.hinge import GROUND, TIP, Hinge, Leaf
 from tensegym.flexure.hinge.ranges import check_count
 
 ELEMENTS = 16  # a leaf as long as the hinge: exact to the elastica within 3e-7 L
+PROFILED = 4  # times as many where the thickness changes, whatever the leaf's length: there the error falls as h^2 only
+GAUSS = np.polynomial.legendre.leggauss(16)
 
 
 class Mesh(NamedTuple):
@@ -19,13 +21,18 @@ class Mesh(NamedTuple):
     ends: IntArray
     """(m, 4) of each leaf: start body, end body, number of elements, first node."""
     real: FloatArray
-    """(m, 9) columns named in chain.py; AX..BY: leaf end from its body's point, in base axes at rest."""
+    """(m, 7) columns named in chain.py; AX..BY: leaf end from its body's point, in base axes at rest."""
+    pieces: FloatArray
+    """(k, 2) EA [N] and EI [N m^2] of the element after each node; a leaf's last node repeats the element before."""
     rest: FloatArray
     """(b, 3) pose of every body at rest."""
 
 
 def mesh_of(hinge: Hinge, elements: int = ELEMENTS) -> Mesh:
-    """Flat arrays of a hinge; ``elements`` for a leaf as long as the hinge, others in proportion, 4 at least."""
+    """Flat arrays of a hinge; ``elements`` for a leaf as long as the hinge, others in proportion, 4 at least.
+
+    A leaf with a profile has PROFILED times ``elements``.
+    """
     check_count("elements", elements, 1, 2000, "16 is exact to the elastica within 3e-7 L")
     order = [GROUND, *(b for b in hinge.bodies if b not in (GROUND, TIP)), TIP]
     points: dict[str, list[tuple[float, float]]] = {body: [] for body in order}
@@ -36,16 +43,32 @@ def mesh_of(hinge: Hinge, elements: int = ELEMENTS) -> Mesh:
     for i, body in enumerate(order[1:-1], start=1):
         rest[i, :2] = np.mean(points[body], axis=0)
     rest[-1, 0] = hinge.length
-    ends, real, first = [], [], 0
+    ends, real, pieces, first = [], [], [], 0
     modulus = hinge.material.effective_modulus
     for leaf in hinge.leaves:
         count = max(min(elements, 4), round(elements * leaf.length / hinge.length))
+        if leaf.profile is not None:
+            count = PROFILED * elements
         a, b = order.index(leaf.start_body), order.index(leaf.end_body)
         dx, dy = leaf.end[0] - leaf.start[0], leaf.end[1] - leaf.start[1]
-        area = leaf.width * leaf.thickness
         ends.append((a, b, count, first))
-        real.append((leaf.length / count, dx / leaf.length, dy / leaf.length, modulus * area,
-                     modulus * area * leaf.thickness**2 / 12, leaf.start[0] - rest[a, 0], leaf.start[1] - rest[a, 1],
-                     leaf.end[0] - rest[b, 0], leaf.end[1] - rest[b, 1]))  # fmt: skip
+        real.append((leaf.length / count, dx / leaf.length, dy / leaf.length, leaf.start[0] - rest[a, 0],
+                     leaf.start[1] - rest[a, 1], leaf.end[0] - rest[b, 0], leaf.end[1] - rest[b, 1]))  # fmt: skip
+        pieces.append(_sections(leaf, count, modulus))
         first += count + 1
-    return Mesh(np.array(ends, dtype=np.int64), np.array(real), rest)
+    return Mesh(np.array(ends, dtype=np.int64), np.array(real), np.concatenate(pieces), rest)
+
+
+def _sections(leaf: Leaf, count: int, modulus: float) -> FloatArray:
+    """(count + 1, 2) EA and EI: constant, or such that each element stretches and bends as its part of the profile.
+
+    That is the harmonic mean over the element, exact under a constant force and moment.
+    """
+    if leaf.profile is None:
+        area = leaf.width * leaf.thickness
+        return np.tile([modulus * area, modulus * area * leaf.thickness**2 / 12], (count + 1, 1))
+    place, weight = GAUSS
+    thickness = leaf.thickness_at((np.arange(count)[:, None] + 0.5 * (1 + place)) / count)
+    mean, cube = (1 / (1 / thickness**power @ (0.5 * weight)) for power in (1, 3))
+    rows = modulus * leaf.width * np.column_stack([mean, cube / 12])
+    return np.concatenate([rows, rows[-1:]])

@@ -34,7 +34,7 @@ def near(mesh, mem, before):
         work += share
         size += abs(share)
     gain = mem.held[3] - before.held[3]
-    rounding = 1e-20 * mesh.real[0, EA] * mesh.real[0, L0] + 1e-12 * (mem.held[3] + before.held[3])
+    rounding = 1e-20 * mesh.pieces[0, EA] * mesh.real[0, L0] + 1e-12 * (mem.held[3] + before.held[3])
     return abs(gain - work) <= LARGEST_GAP * (abs(gain) + size) + rounding
 
 

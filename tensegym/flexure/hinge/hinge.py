@@ -5,9 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
+from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
 from tensegym.tables import show
 
+from .profile import Profile
 from .ranges import (
     check_choice,
     check_max_angle,
@@ -61,7 +65,7 @@ class Material:
 
 @dataclass(frozen=True)
 class Leaf:
-    """A straight leaf of constant section, clamped at both ends to a rigid body; points in base axes at rest [m]."""
+    """A straight leaf, clamped at both ends to a rigid body; points in base axes at rest [m]."""
 
     start_body: str
     start: Point
@@ -70,7 +74,9 @@ class Leaf:
     width: float
     """Out of plane [m]."""
     thickness: float
-    """In plane [m]."""
+    """In plane [m]; of a taper at its start, of a notch at its web."""
+    profile: Profile | None = None
+    """How the thickness runs along the leaf; None: it is constant."""
 
     def __post_init__(self) -> None:
         for what, point in (("start", self.start), ("end", self.end)):
@@ -84,10 +90,28 @@ class Leaf:
                 f"leaf {self.start_body}-{self.end_body}: thickness = {self.thickness:g} m at a length of "
                 f"{self.length:g} m; beam theory needs a thickness below length / 4"
             )
+        if self.profile is not None:
+            self.profile.check(f"leaf {self.start_body}-{self.end_body}", self.thickness, self.length)
 
     @property
     def length(self) -> float:
         return math.dist(self.start, self.end)
+
+    @property
+    def thinnest(self) -> float:
+        """Smallest thickness [m]."""
+        return min(self.thickness, *self.end_thicknesses)
+
+    @property
+    def end_thicknesses(self) -> tuple[float, float]:
+        """Thickness at the start and at the end [m]."""
+        return (self.thickness, self.thickness) if self.profile is None else self.profile.ends(self.thickness)
+
+    def thickness_at(self, share: FloatArray) -> FloatArray:
+        """Thickness (n,) [m] at shares (n,) of the length, 0 at the start and 1 at the end."""
+        if self.profile is None:
+            return np.full(np.shape(share), self.thickness)
+        return self.profile.at(share, self.thickness, self.length)
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,8 @@
     to_mm = [40.0, 0.0]
     width_mm = 40.0
     thickness_mm = 0.8
+    end_thickness_mm = 0.4          # optional: the leaf tapers; thickness_mm is then that at from_mm
+    notch_mm = [5.0, 5.0]           # or: elliptic fillets at both ends of a web, semi-axes along and across the leaf
 
 or a preset with other dimensions: preset = "x-hinge", thickness_mm = 1.0.
 """
@@ -31,9 +33,11 @@ from tensegym.tables import as_number, as_numbers, as_text, in_file, known, mapp
 
 from .hinge import GROUND, TIP, Hinge, Leaf, Material
 from .presets import MM, preset
+from .profile import Notch, Profile, Taper
 
 _MATERIAL = ("youngs_modulus_GPa", "poisson_ratio", "modulus", "factor")
 _LEAF = ("from", "from_mm", "to", "to_mm", "width_mm", "thickness_mm")
+_PROFILE = ("end_thickness_mm", "notch_mm")
 _HINGE = ("name", "length_mm", "arm_mm", "max_angle_deg", "bodies", "material", "leaf")
 
 
@@ -101,7 +105,8 @@ def hinge_to_dict(hinge: Hinge) -> dict[str, Any]:
         },
         "leaf": [
             {"from": leaf.start_body, "from_mm": [_mm(v) for v in leaf.start], "to": leaf.end_body,
-             "to_mm": [_mm(v) for v in leaf.end], "width_mm": _mm(leaf.width), "thickness_mm": _mm(leaf.thickness)}
+             "to_mm": [_mm(v) for v in leaf.end], "width_mm": _mm(leaf.width), "thickness_mm": _mm(leaf.thickness),
+             **_profile_to_dict(leaf.profile)}
             for leaf in hinge.leaves
         ],
     }  # fmt: skip
@@ -127,7 +132,7 @@ def _material(data: Any) -> Material:
 
 def _leaf(data: Any, number: int) -> Leaf:
     where = f"leaf {number}"
-    missing = set(_LEAF) - known(data, _LEAF, where, FlexureError).keys()
+    missing = set(_LEAF) - known(data, (*_LEAF, *_PROFILE), where, FlexureError).keys()
     if missing:
         raise FlexureError(one_line(f"{where} has no {min(missing)!r}; it needs {', '.join(sorted(_LEAF))}"))
     bodies = [as_text(data[key], f"{where}: {key}", FlexureError) for key in ("from", "to")]
@@ -137,7 +142,24 @@ def _leaf(data: Any, number: int) -> Leaf:
         points.append((MM * x, MM * y))
     width, thickness = (MM * as_number(data[key], f"{where}: {key}", FlexureError)
                         for key in ("width_mm", "thickness_mm"))  # fmt: skip
-    return Leaf(bodies[0], points[0], bodies[1], points[1], width, thickness)
+    return Leaf(bodies[0], points[0], bodies[1], points[1], width, thickness, _profile(data, where))
+
+
+def _profile(data: dict[str, Any], where: str) -> Profile | None:
+    if all(key in data for key in _PROFILE):
+        raise FlexureError(f"{where} has both {' and '.join(_PROFILE)}; a leaf tapers or is notched, give one")
+    if "end_thickness_mm" in data:
+        return Taper(MM * as_number(data["end_thickness_mm"], f"{where}: end_thickness_mm", FlexureError))
+    if "notch_mm" in data:
+        along, across = as_numbers(data["notch_mm"], 2, f"{where}: notch_mm", FlexureError)
+        return Notch(MM * along, MM * across)
+    return None
+
+
+def _profile_to_dict(profile: Profile | None) -> dict[str, Any]:
+    if isinstance(profile, Taper):
+        return {"end_thickness_mm": _mm(profile.end_thickness)}
+    return {} if profile is None else {"notch_mm": [_mm(profile.along), _mm(profile.across)]}
 
 
 def _mm(value: float) -> float:

@@ -1,4 +1,4 @@
-"""The paper's four hinges and two more topologies, each with free dimensions.
+"""The paper's four hinges and more topologies, each with free dimensions.
 
 Geometry and material: Rakshin and Borisov 2023, Fig. 4 (L = H = W = 40 mm, t = 0.8 mm, arm 120 mm, E = 2.95 GPa,
 nu = 0.38). Where the paper gives no dimension, the one taken here is said in the function.
@@ -15,6 +15,7 @@ from tensegym.errors import FlexureError
 from tensegym.tables import show
 
 from .hinge import GROUND, TIP, Hinge, Leaf, Material
+from .profile import Notch, Taper
 from .ranges import check_positive, is_number, shown
 
 MM = 1e-3
@@ -88,6 +89,27 @@ def parallel_guide(*, length: float = 40 * MM, height: float = 40 * MM, width: f
                  max_angle=math.radians(0.01))  # fmt: skip
 
 
+def tapered_leaf(*, length: float = 40 * MM, width: float = 40 * MM, thickness: float = 0.8 * MM,
+                 end_thickness: float = 0.4 * MM, material: Material | None = None,
+                 arm: float = 120 * MM) -> Hinge:  # fmt: skip
+    """One leaf, ``thickness`` at the ground and ``end_thickness`` at the tip. All lengths [m]."""
+    leaf = Leaf(GROUND, (0.0, 0.0), TIP, (length, 0.0), width, thickness, Taper(end_thickness))
+    return Hinge("tapered-leaf", (leaf,), length, material=material or Material(), arm=arm)
+
+
+def notch_hinge(*, length: float = 10 * MM, width: float = 40 * MM, thickness: float = 0.5 * MM,
+                radius: float | None = None, depth: float | None = None, material: Material | None = None,
+                arm: float = 120 * MM) -> Hinge:  # fmt: skip
+    """A web of ``thickness`` between fillets, ``radius`` along and ``depth`` across it; without both: a circular notch.
+
+    radius = L/2 (the default): no straight web. depth = radius (the default): circles. All lengths [m].
+    """
+    along = length / 2 if radius is None else radius
+    notch = Notch(along, along if depth is None else depth)
+    leaf = Leaf(GROUND, (0.0, 0.0), TIP, (length, 0.0), width, thickness, notch)
+    return Hinge("notch-hinge", (leaf,), length, material=material or Material(), arm=arm, max_angle=math.radians(10))
+
+
 PRESETS: dict[str, Callable[..., Hinge]] = {
     "x-hinge": x_hinge,
     "leaf-spring": leaf_spring,
@@ -95,6 +117,8 @@ PRESETS: dict[str, Callable[..., Hinge]] = {
     "tfch": tfch,
     "cross-spring": cross_spring,
     "parallel-guide": parallel_guide,
+    "tapered-leaf": tapered_leaf,
+    "notch-hinge": notch_hinge,
 }
 PAPER_HINGES = ("x-hinge", "leaf-spring", "trls2", "tfch")
 

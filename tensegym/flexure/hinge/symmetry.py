@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .hinge import Hinge
+from .profile import Notch
 
 
 def symmetry_of(hinge: Hinge) -> str:
@@ -17,11 +18,14 @@ def symmetry_of(hinge: Hinge) -> str:
 
 
 def _shapes(hinge: Hinge, flip_x: bool, flip_y: bool) -> dict[tuple[int, ...], int]:
-    """Width by place and thickness of the leaves of a mirror image, all in nm."""
+    """Width by place, thickness and profile of the leaves of a mirror image, all in nm."""
     out: dict[tuple[int, ...], int] = {}
     for leaf in hinge.leaves:
-        ends = sorted((round(1e9 * (hinge.length - x if flip_x else x)), round(1e9 * (-y if flip_y else y)))
-                      for x, y in (leaf.start, leaf.end))  # fmt: skip
-        place = (*ends[0], *ends[1], round(1e9 * leaf.thickness))
+        points = zip((leaf.start, leaf.end), leaf.end_thicknesses, strict=True)
+        ends = sorted((round(1e9 * (hinge.length - x if flip_x else x)), round(1e9 * (-y if flip_y else y)),
+                       round(1e9 * thickness)) for (x, y), thickness in points)  # fmt: skip
+        notch = leaf.profile if isinstance(leaf.profile, Notch) else None
+        fillet = (round(1e9 * notch.along), round(1e9 * notch.across)) if notch else (0, 0)
+        place = (*ends[0], *ends[1], *fillet)
         out[place] = out.get(place, 0) + round(1e9 * leaf.width)
     return out

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from tensegym.errors import FlexureError
 from tensegym.flexure.fem import ELEMENTS
 from tensegym.flexure.fem.arm_sweep import arm_sweep
+from tensegym.flexure.fem.mesh_error import too_coarse
 from tensegym.flexure.fem.sampling import HELD_OUT_SEED, default_box, fit_states, held_out_states, moment_at
 from tensegym.flexure.hinge import Hinge, States, symmetry_of
 
@@ -56,6 +57,9 @@ def fit_joint(
     certify(fit.potential)
     models: dict[str, Model] = {"potential": fit.potential, "planar": fit_planar(states, hinge.length)}
     notes = [f"the states cannot tell {', '.join(fit.unidentified)}"] if fit.unidentified else []
+    coarse = too_coarse(hinge, box.max_angle, elements)
+    if coarse:
+        notes.append(coarse)
     if not hinge.arm:
         notes.append("no arm: stiffness diagrams and torsion spring are fitted to a pure moment's sweep")
     sweep = arm_sweep(hinge, box.max_angle, elements=elements)

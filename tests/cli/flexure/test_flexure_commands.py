@@ -288,3 +288,29 @@ def test_texts_that_are_no_joint_files(text, tmp_path):
     with pytest.raises(FlexureError, match=r"is not JSON|is no joint file|holds null bytes|nested too deep") as caught:
         load_joint(path)
     assert "\n" not in str(caught.value) and len(str(caught.value)) <= 300
+
+
+def test_a_coarse_mesh_is_told_in_one_line(cli, loads, tmp_path):
+    loads.write_text("Fx_N,Fy_N,Mz_Nmm\n0,3,0\n")
+    words = ("flexure", "solve", "--hinge", "leaf-spring", "--loads", loads, "--out", tmp_path / "o.csv")
+    _, coarse, _ = cli(*words, "--elements", 1)
+    _, fine, _ = cli(*words)
+    assert coarse.count("note: the mesh is too coarse: elements = 1 is off by") == 1 and "take elements = 2" in coarse
+    assert "too coarse" not in fine
+    _, fitted, _ = cli("flexure", "fit", "leaf-spring", "--out", tmp_path / "j", "--elements", 1, "--held-out", 0)
+    assert fitted.count("too coarse") == 1
+
+
+def test_profiles_from_the_command_line(cli, tmp_path):
+    out = tmp_path / "joint.json"
+    status, _, _ = cli(
+        "flexure", "fit", "notch-hinge", "--out", out, "--radius-mm", 3, "--depth-mm", 2, "--held-out", 20
+    )
+    assert status == 0
+    data = json.loads(out.read_text())
+    assert data["hinge"]["leaf"][0]["notch_mm"] == [3.0, 2.0]
+    assert data["errors"]["potential"]["tip_rms_m"] < 1e-6
+    assert_refused(
+        cli("flexure", "fit", "notch-hinge", "--out", out, "--radius-mm", 6), "above half of the web's length"
+    )
+    assert_refused(cli("flexure", "fit", "tapered-leaf", "--out", out, "--end-thickness-mm", 0), "end_thickness = 0 m")

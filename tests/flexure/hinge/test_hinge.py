@@ -21,7 +21,7 @@ from tensegym.flexure.hinge import (
     preset,
     symmetry_of,
 )
-from tensegym.flexure.hinge.presets import leaf_spring, trls2
+from tensegym.flexure.hinge.presets import leaf_spring, notch_hinge, tapered_leaf, trls2
 
 LOOSE = Leaf("a", (0, 0), "b", (0.01, 0), 0.01, 1e-4)
 PLAIN = Leaf(GROUND, (0, 0), TIP, (0.04, 0), 0.04, 0.0008)
@@ -51,6 +51,11 @@ PLAIN = Leaf(GROUND, (0, 0), TIP, (0.04, 0), 0.04, 0.0008)
     (lambda: preset("leaf-spring", height=0.1), "has no 'height'"),
     (lambda: trls2(rib=0.02), "rib = 0.02 m"),
     (lambda: preset("trls2", rib=0), "rib = 0 m"),
+    (lambda: tapered_leaf(end_thickness=0.0), "end_thickness = 0 m, the leaf would end in an edge"),
+    (lambda: tapered_leaf(end_thickness=0.02), "end_thickness = 0.02 m at a length of 0.04 m"),
+    (lambda: notch_hinge(radius=0.006), r"radius 0.006 m along the leaf is above half of the web's length 0.01 m"),
+    (lambda: notch_hinge(depth=0), "depth across the leaf = 0 m"),
+    (lambda: notch_hinge(thickness=0.003), "thickness = 0.003 m at a length of 0.01 m"),
 ])  # fmt: skip
 def test_refused(make, words):
     with pytest.raises(FlexureError, match=words):
@@ -111,6 +116,10 @@ GOOD = {"length_mm": 40.0, "leaf": [{"from": "ground", "from_mm": [0, 0], "to": 
     ({"bodies": ["ground", "tip", "loose"]}, "'loose' is disconnected"),
     ({"max_angle_deg": 100}, "max_angle"),
     ({"name": 3}, "name = 3"),
+    ({"leaf": [GOOD["leaf"][0] | {"end_thickness_mm": 0}]}, "end_thickness = 0 m"),
+    ({"leaf": [GOOD["leaf"][0] | {"notch_mm": [25, 5]}]}, "above half of the web's length 0.04 m; give 0.02 m"),
+    ({"leaf": [GOOD["leaf"][0] | {"notch_mm": [5]}]}, "leaf 1: notch_mm"),
+    ({"leaf": [GOOD["leaf"][0] | {"notch_mm": [5, 5], "end_thickness_mm": 1}]}, "tapers or is notched, give one"),
 ])  # fmt: skip
 def test_bad_dicts(change, words):
     hinge_from_dict(GOOD)
@@ -132,4 +141,5 @@ def test_bad_presets_and_files(tmp_path):
 def test_symmetry():
     assert [symmetry_of(preset(name)) for name in ("x-hinge", "trls2", "tfch", "cross-spring")] == ["both"] * 4
     assert symmetry_of(preset("cross-spring", crossing=0.2)) == "axis"
+    assert [symmetry_of(preset(name)) for name in ("notch-hinge", "tapered-leaf")] == ["both", "axis"]
     assert symmetry_of(Hinge("h", (Leaf(GROUND, (0, 0), TIP, (0.04, 0.01), 0.04, 0.0008),), 0.04)) == "none"
