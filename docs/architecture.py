@@ -17,6 +17,7 @@ HERE = Path(__file__).parent
 
 PLACES = {  # of each shelf: column, row from below, what stands there
     "structure": (0.0, 1.0, "a tensegrity at rest"),
+    "structures": (-0.6, 1.9, "builders of them"),
     "flexure": (1.2, 1.0, "hinges, FEM, joint models"),
     "design": (0.5, 2.0, "a robot as data"),
     "physics": (0.5, 3.0, "the compiled substep"),
