@@ -11,6 +11,8 @@ length L. Planar; leaves bend by Euler and Bernoulli (no shear), bodies are rigi
     assembly.py      all leaves and bodies together; memory.py: state and workspace; ldl.py: the factorisation
     newton.py        one load case; path.py: from case to case, no instability stepped over
     arm_sweep.py     the paper's stand: a force across the arm, through the range
+    push.py          travel control; travel.py: stiffness, stress and buckling along a path
+    tangent.py       stiffness at the tip and load factor of a state; stress.py, out_of_plane.py: more of it
     sampling.py      states of a hinge over its box, for fits and held out from them
     buckling.py      buckling load of a rod with a hinge in it; centre_shift.py: of a pivot
 

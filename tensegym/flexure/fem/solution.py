@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,3 +48,8 @@ class Solution:
         if self.status[index] == BUCKLED:
             return f"buckles at {self.reached[index]:.3g} of this load"
         return f"no equilibrium found beyond {self.reached[index]:.3g} of this load"
+
+
+def together(parts: list[Solution]) -> Solution:
+    """One Solution of all parts, in order."""
+    return Solution(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Solution)))
