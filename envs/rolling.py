@@ -82,7 +82,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
     rgb_array, human), vary, episodes_per_design; and in place of the task's own: dt [s], settle [s], slope [deg]
     (uphill along the wanted direction; what the robot sees of it is how its parts move), reward (weights to change, see
     RewardWeights), disturb (ranges of what goes otherwise than designed, see `tensegym.tasks.disturbance`), engine
-    (pybullet or mujoco).
+    (pybullet or mujoco), obstacle (of a course: blocks, corridor, bar, incline, rough or all).
 
     ``reset(options=...)``: face (index), heading [rad], direction [rad], and design, which puts another robot with as
     many nodes, cables and drives into the same environment.
@@ -113,17 +113,18 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         task: str | dict[str, Any] | Task = "roll",
         disturb: dict[str, Any] | None = None,
         engine: str | None = None,
+        obstacle: str | None = None,
     ) -> None:
         EzPickle.__init__(
             self, design, observation, control_period, dt, settle, reward, render_mode, vary, episodes_per_design,
-            slope, task, disturb, engine,
+            slope, task, disturb, engine, obstacle,
         )
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise DesignError(f"render_mode = {render_mode!r} is not one of None, rgb_array, human")
         if type(episodes_per_design) is not int or episodes_per_design < 0:
             raise DesignError(f"episodes_per_design = {episodes_per_design!r} must be a whole number, 0 or more")
         self.task = as_task(task).changed(
-            dt=dt, settle=settle, slope=slope, reward=reward, disturb=disturb, engine=engine
+            dt=dt, settle=settle, slope=slope, reward=reward, disturb=disturb, engine=engine, obstacle=obstacle
         )
         self.dt = self.task.dt
         self.substeps = whole_steps(control_period, self.dt)

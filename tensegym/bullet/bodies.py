@@ -9,10 +9,12 @@ from pathlib import Path
 
 from tensegym.arrays import FloatArray
 from tensegym.errors import SimulationError
+from tensegym.physics.box import Box
 
 from .engine import pybullet
 
 _ROBOT_GROUP, _GROUND_GROUP = 1, 2
+_BOX_COLOUR = (0.72, 0.6, 0.45, 1.0)
 FIXED, REVOLUTE, PRISMATIC = range(3)  # kinds of joints
 
 
@@ -77,7 +79,23 @@ def make_ground(client: int, friction: float, heights: FloatArray | None = None,
             numHeightfieldRows=len(heights), numHeightfieldColumns=len(heights), physicsClientId=client,
         )  # fmt: skip
         middle = float(heights.min() + heights.max()) / 2  # which the engine takes for the shape's origin
-    ground = pybullet.createMultiBody(0, shape, basePosition=[0, 0, middle], physicsClientId=client)
-    pybullet.changeDynamics(ground, -1, lateralFriction=math.sqrt(friction), restitution=0, physicsClientId=client)
-    pybullet.setCollisionFilterGroupMask(ground, -1, _GROUND_GROUP, _ROBOT_GROUP, physicsClientId=client)
-    return ground
+    return _fixed(client, shape, (0, 0, middle), (0, 0, 0, 1), friction)
+
+
+def make_box(client: int, box: Box, friction: float) -> int:
+    """The engine's number of a fixed body."""
+    shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=box.half, physicsClientId=client)
+    seen = pybullet.createVisualShape(
+        pybullet.GEOM_BOX, halfExtents=box.half, rgbaColor=_BOX_COLOUR, physicsClientId=client
+    )
+    return _fixed(client, shape, box.centre, box.turn, friction, seen)
+
+
+def _fixed(
+    client: int, shape: int, place: Sequence[float], turn: Sequence[float], friction: float, seen: int = -1
+) -> int:
+    """A body that nothing moves and that touches robots alone."""
+    body = pybullet.createMultiBody(0, shape, seen, list(place), list(turn), physicsClientId=client)
+    pybullet.changeDynamics(body, -1, lateralFriction=math.sqrt(friction), restitution=0, physicsClientId=client)
+    pybullet.setCollisionFilterGroupMask(body, -1, _GROUND_GROUP, _ROBOT_GROUP, physicsClientId=client)
+    return body

@@ -54,10 +54,12 @@ class Client(Uncopied):
         """Disconnect; further calls fail."""
         self._finalizer()
 
-    def add_ground(self, friction: float, heights: FloatArray | None = None, cell: float = 0.0) -> None:
-        """The plane z = 0, or a grid of heights (n, n) [m] over x and y, ``cell`` [m] apart, about the origin."""
+    def add_ground(self, friction: float, heights: FloatArray | None = None, cell: float = 0.0) -> int:
+        """The plane z = 0, or a grid of heights (n, n) [m] over x and y, ``cell`` [m] apart, about the origin; returns
+        the engine's number of it."""
         self.ground = make_ground(self.client, friction, heights, cell)
         self._fine_contacts = heights is not None and len(heights) > 0
+        return self.ground
 
     def set_gravity(self, gravity: Sequence[float]) -> None:
         """Gravity (3,) in the world [m/s^2], in place of the one straight down."""

@@ -18,7 +18,7 @@ from tensegym.physics.model import Model, Out, State
 from tensegym.physics.terrain import Ground
 
 from . import c_interface
-from .bodies import load_body, packaged_urdf
+from .bodies import load_body, make_box, packaged_urdf
 from .client import Client
 from .compiled_loop import run
 from .engine import pybullet
@@ -31,7 +31,7 @@ class EngineAccess(NamedTuple):
     client: int
     """The client's number."""
     body_count: int
-    """How many bodies it holds, the ground among them."""
+    """How many bodies it holds, the ground and boxes among them."""
     window: IntArray
     """(3,) where the engine writes states, see state_buffer.py."""
     body_ids: NDArray[np.int32]
@@ -67,8 +67,10 @@ class BulletWorld(Client, World):
         self._pack_angles = struct.Struct(f"{len(self._second_links)}d")
         self._access: EngineAccess | None = None
         self._stale = True  # whether the engine has moved since `poses` and `angles` were read
+        self._fixed: set[int] = set()
         if scene.ground:
-            self.add_ground(scene.friction, scene.ground.heights, scene.ground.cell)
+            self._fixed.add(self.add_ground(scene.friction, scene.ground.heights, scene.ground.cell))
+            self._fixed |= {make_box(self.client, box, scene.friction) for box in scene.boxes}
         self._pristine = self.save()
 
     def _load(self) -> list[int]:
@@ -158,7 +160,7 @@ class BulletWorld(Client, World):
         date from now on."""
         self._stale = True
         if self._access is None:
-            total = len(self.body_ids) + (self.ground is not None)
+            total = len(self.body_ids) + len(self._fixed)
             numbers = np.array(self.body_ids, dtype=np.int32)
             window = find_window(c_interface.client_handle(self.client, total), numbers)
             rows = np.array(self._two_link_rows, dtype=np.int64)
@@ -181,9 +183,9 @@ class BulletWorld(Client, World):
         for point in pybullet.getContactPoints(physicsClientId=self.client):
             _, a, b, link_a, link_b, on_a, place, normal, distance, push, along, one, across, two, *_ = point
             sign = 1.0
-            if a == self.ground:
+            if a in self._fixed:
                 a, b, link_a, link_b, place, sign = b, a, link_b, link_a, on_a, -1.0
-            other = GROUND if b == self.ground else rows[b, link_b]
+            other = GROUND if b in self._fixed else rows[b, link_b]
             friction = along * np.array(one) + across * np.array(two)
             found.append(Contact(rows[a, link_a], other, np.array(place), sign * np.array(normal), distance, push,
                                  sign * friction))  # fmt: skip

@@ -35,8 +35,8 @@ class Evaluate:
     episodes: Count = 100
     """Episodes, each from a random face at a random heading towards a random direction."""
     task: str | None = None
-    """A motion (roll, climb, cross, step, steer, places, path) or a TOML file with a [task] table, in place of the
-    policy's own task."""
+    """A motion (roll, climb, cross, step, steer, places, path, course) or a TOML file with a [task] table, in place of
+    the policy's own task."""
     disturb: Path | None = None
     """A TOML file of what goes otherwise than designed, as in mass = 0.2 (`tensegym fields disturbance`); default: as
     in the training."""

@@ -89,8 +89,8 @@ def _drive_parts(robot: TensegrityRobot) -> list[Part]:
 class FullObservation(Observation):
     """Nodes and their velocities in the heading frame, drives, tensions, foot contacts.
 
-    The wanted direction is the frame's x axis. Heights are above the ground, horizontal positions from the centre of
-    mass.
+    The wanted direction is the frame's x axis. Heights are above the reading's level, horizontal positions from the
+    centre of mass.
     """
 
     def __init__(self, robot: TensegrityRobot) -> None:
@@ -111,7 +111,7 @@ class FullObservation(Observation):
     def values(self, robot: TensegrityRobot, reading: Reading, bearing: Bearing) -> FloatArray:
         """As `Observation` has it."""
         turn = heading_rotation(bearing.direction)
-        below = reading.centre * [1.0, 1.0, 0.0]
+        below = np.array([*reading.centre[:2], reading.level])
         return np.concatenate([
             ((reading.nodes - below) @ turn.T).ravel() / self.length,
             (reading.node_velocities @ turn.T).ravel() / self.length,

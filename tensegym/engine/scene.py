@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from tensegym.arrays import FloatArray
 from tensegym.design.bodies import Body
+from tensegym.physics.box import Box
 from tensegym.physics.terrain import Ground
 
 
@@ -27,4 +28,9 @@ class Scene(NamedTuple):
     gravity: float = 0.0
     """Straight down [m/s^2]; `World.set_gravity` changes it."""
     ground: Ground | None = None
-    """The plane z = 0, a field of heights, or none."""
+    """The plane z = 0 or a field of heights, with boxes on it that nothing moves; or none."""
+
+    @property
+    def boxes(self) -> tuple[Box, ...]:
+        """Those that stand on the ground."""
+        return self.ground.obstacles if self.ground else ()

@@ -29,7 +29,7 @@ class Contact(NamedTuple):
     link: int
     """Row of the link."""
     other: int
-    """Row of the other one, or GROUND."""
+    """Row of the other one, or GROUND, which boxes are a part of."""
     place: FloatArray
     """(3,) on the other one [m]."""
     normal: FloatArray

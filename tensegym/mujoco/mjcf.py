@@ -9,6 +9,7 @@ import numpy as np
 from tensegym.arrays import FloatArray
 from tensegym.design.bodies import Body, Link, Shape
 from tensegym.engine import Scene
+from tensegym.physics.box import Box
 from tensegym.physics.terrain import Ground
 
 # A contact gives way as a critically damped spring with this time constant [s], the least that MuJoCo takes at 2 ms (it
@@ -22,6 +23,7 @@ def scene_mjcf(scene: Scene) -> str:
     """What `MujocoWorld` loads: the integrator whose step the leapfrog is made of, no automatic resets."""
     bodies = [body_mjcf(body, pose) for body, pose in zip(scene.bodies, scene.poses, strict=True)]
     asset, ground = ground_mjcf(scene.ground)
+    ground += [_box(box) for box in scene.boxes]
     option = option_mjcf(scene.dt, scene.gravity, "Euler", '<flag autoreset="disable"/>')
     return mjcf("scene", option, scene.friction, asset, [*ground, *bodies])
 
@@ -57,6 +59,11 @@ def ground_mjcf(ground: Ground | None) -> tuple[list[str], list[str]]:
     size = f"{half:.17g} {half:.17g} {max(high - low, 1e-6):.17g} {BASE:g}"
     return ([f'<hfield name="ground" nrow="{count}" ncol="{count}" size="{size}"/>'],
             [f'    <geom name="ground" type="hfield" hfield="ground" pos="0 0 {low:.17g}"/>'])  # fmt: skip
+
+
+def _box(box: Box) -> str:
+    turn = text(np.roll(box.turn, 1))
+    return f'    <geom type="box" size="{text(box.half)}" pos="{text(box.centre)}" quat="{turn}"/>'
 
 
 def body_mjcf(

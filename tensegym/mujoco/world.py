@@ -20,6 +20,7 @@ from tensegym.physics.terrain import Ground
 from . import c_interface
 from .mjcf import scene_mjcf
 
+_WORLD = 0  # MuJoCo's number of what does not move
 _KEPT = mujoco.mjtState.mjSTATE_INTEGRATION  # all that the next step depends on, the solver's first guess among it
 
 
@@ -67,7 +68,6 @@ class MujocoWorld(World):
                                   "leave out compiled=True")  # fmt: skip
         self.compiled = c_interface.AVAILABLE if compiled is None else compiled
         self.model = mujoco.MjModel.from_xml_string(scene_mjcf(scene))
-        self._ground = self.model.geom("ground").id if scene.ground else -1
         if scene.ground and scene.ground.rough:
             heights = scene.ground.heights
             scaled = (heights - heights.min()) / max(np.ptp(heights), 1e-6)
@@ -161,7 +161,7 @@ class MujocoWorld(World):
             frame, sign = contact.frame.reshape(3, 3), 1.0  # its rows: the normal from the first to the second geom
             bodies = self.model.geom_bodyid[contact.geom]
             link, other = bodies[1], bodies[0]
-            if contact.geom[1] == self._ground:
+            if bodies[1] == _WORLD:  # the ground, or a box on it
                 link, other, sign = other, link, -1.0
             normal = sign * frame[0]
             place = contact.pos - 0.5 * contact.dist * normal

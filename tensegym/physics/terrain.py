@@ -1,7 +1,8 @@
-"""Rough ground: a random smooth field of heights, and how far a foot is above it."""
+"""Ground: a plane, a random smooth field of heights, boxes on it; and how far a foot is above it."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -13,6 +14,7 @@ from tensegym.compiled import kernel
 from tensegym.errors import DesignError
 from tensegym.tables import Checked, bounded
 
+from .box import Box, box_rows, boxes_of, distance_to_box
 from .vectors import ALLOCATING, KERNEL
 
 CELLS_PER_LENGTH = 4  # grid cells a correlation length
@@ -73,11 +75,22 @@ class Ground(NamedTuple):
     """(n, n) [m] over x (rows) and y; (0, 0) for the plane z = 0."""
     cell: float
     """Spacing of the grid [m]."""
+    boxes: FloatArray = np.zeros((0, 10))
+    """(k, 10) of the boxes that stand on it, see box.py."""
 
     @property
     def rough(self) -> bool:
-        """Whether it is other than a plane."""
+        """Whether it is other than a plane, boxes apart."""
         return len(self.heights) > 0
+
+    @property
+    def obstacles(self) -> tuple[Box, ...]:
+        """The boxes, one by one."""
+        return boxes_of(self.boxes)
+
+    def holding(self, boxes: Iterable[Box]) -> Ground:
+        """The same ground with these boxes on it."""
+        return self._replace(boxes=box_rows(boxes))
 
 
 FLAT = Ground(np.zeros((0, 0)), 1.0)
@@ -85,12 +98,18 @@ FLAT = Ground(np.zeros((0, 0)), 1.0)
 
 @kernel(**KERNEL)
 def distance_to_ground(point, ground):
-    """Signed distance [m] of a point (3,) to the ground, below it negative; nan beyond its edges.
+    """Signed distance [m] of a point (3,) to the ground or to the nearest box, below or in it negative; nan beyond the
+    ground's edges."""
+    distance = _distance_to_heights(point, ground.heights, ground.cell)
+    for b in range(len(ground.boxes)):
+        distance = min(distance, distance_to_box(point, ground.boxes[b], distance))
+    return distance
 
-    Where it is no plane it is what the engine makes of a grid: two triangles a cell, which meet in the diagonal from
-    (0, 1) to (1, 0). The distance is that to the plane of the triangle above or below the point.
-    """
-    heights, cell = ground.heights, ground.cell
+
+@kernel(**KERNEL)
+def _distance_to_heights(point, heights, cell):
+    """To the plane z = 0, or to what the engine makes of a grid of heights: two triangles a cell, which meet in the
+    diagonal from (0, 1) to (1, 0). The distance is that to the plane of the triangle above or below the point."""
     if not len(heights):
         return point[2]
     last = len(heights) - 1

@@ -24,18 +24,21 @@ class Reading(NamedTuple):
     """(n, 3) [m/s]."""
     centre: FloatArray
     """(3,) of mass [m]."""
+    level: float = 0.0
+    """Height that heights count from [m]: 0, or that of the lowest foot where there are boxes to stand on."""
 
 
 def read(robot: RobotState) -> Reading:
     """The robot now."""
     velocities = robot.velocities_in_world()
-    return Reading(velocities, *robot.nodes_in_world(velocities), robot.centre_of_mass_in_world())
+    nodes, node_velocities = robot.nodes_in_world(velocities)
+    return Reading(velocities, nodes, node_velocities, robot.centre_of_mass_in_world(), robot.level(nodes))
 
 
 def farthest_node(reading: Reading) -> float:
-    """Largest distance of a node: sideways from the centre of mass, or up from the plane z = 0 [m]."""
+    """Largest distance of a node: sideways from the centre of mass, or up from its level [m]."""
     sideways = np.linalg.norm(reading.nodes[:, :2] - reading.centre[:2], axis=1)
-    return float(max(sideways.max(), np.abs(reading.nodes[:, 2]).max()))
+    return float(max(sideways.max(), np.abs(reading.nodes[:, 2] - reading.level).max()))
 
 
 def heading_rotation(direction: FloatArray) -> FloatArray:

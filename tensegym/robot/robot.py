@@ -34,14 +34,14 @@ class TensegrityRobot(RobotState):
 
     A context manager; `close` frees the engine.
 
-    dt is the physics time step [s]. ground: the plane z = 0, none and no gravity, or a Terrain, flat where the robot
-    starts. ``integrator`` picks explicit or linearly implicit cable forces; "auto" takes
+    dt is the physics time step [s]. ground: the plane z = 0, none and no gravity, a Terrain, flat where the robot
+    starts, or a Ground with boxes on it. ``integrator`` picks explicit or linearly implicit cable forces; "auto" takes
     explicit ones where dt is within their stability limit. Raises DesignError for a dt no integrator holds.
     ``engine``, ``gui`` and ``compiled``: see `tensegym.robot.engines.open_world`.
     """
 
     def __init__(
-        self, design: RobotDesign | None = None, *, dt: float = 1e-3, ground: bool | Terrain = True,
+        self, design: RobotDesign | None = None, *, dt: float = 1e-3, ground: bool | Terrain | Ground = True,
         integrator: Integrator = "auto", gui: bool = False, compiled: bool | None = None, engine: str = "pybullet",
     ) -> None:  # fmt: skip
         design = design or RobotDesign()
@@ -49,7 +49,7 @@ class TensegrityRobot(RobotState):
         self.implicit = held_implicit(design, model, dt, integrator)
         check_clear(design)
 
-        surface = FLAT
+        surface = ground if isinstance(ground, Ground) else FLAT
         if isinstance(ground, Terrain):
             surface = Ground(ground.heights(reach(model)), ground.cell)
         scene = robot_scene(design, model, dt, surface if ground else None)
@@ -130,7 +130,7 @@ class TensegrityRobot(RobotState):
             self.world.run(min(substeps - first, _MOST_AT_ONCE), self.model, self._ground, self._state, self._out,
                            self.dt, self.implicit)  # fmt: skip
         self.time += substeps * self.dt
-        if self._ground.rough:
+        if self._ground.rough or len(self._ground.boxes):
             self._check_ground()
         # bodies that diverge drag their cables along
         whole = len(self.rates) or np.isfinite(self.poses_in_world).all()

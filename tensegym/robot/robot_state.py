@@ -156,6 +156,11 @@ class RobotState(Uncopied):
         """(k,) signed distance [m] of points (k, 3) to the ground; nan beyond its edges."""
         return distances_to_ground(points, self._ground)
 
+    def level(self, nodes: FloatArray) -> float:
+        """Height that heights count from [m]: that of the lowest foot, by the nodes (n, 3), where there are boxes to
+        stand on, else 0."""
+        return float((nodes[:, 2] - self.model.foot_radii).min()) if len(self._ground.boxes) else 0.0
+
     def foot_contacts(self) -> FloatArray:
         """(n,) 1.0 where a foot is within a millimetre of the ground, else 0.0."""
         if self.world.scene.ground is None:

@@ -11,6 +11,7 @@ from tensegym.errors import InputError
 from tensegym.tables import fill, in_file, one_line, read_toml, show
 
 from .bound import Bound
+from .course import Course
 from .follow import Follow
 from .navigate import Navigate
 from .roll import Roll
@@ -35,6 +36,7 @@ MOTIONS: dict[str, Motion] = {
     "steer": Motion(Navigate, {"goal": Bound("leg_speed", True, 0.28), "headings": 1.0, "seconds": 60.0}),
     "places": Motion(Navigate, {"goal": Bound("places", True, 6.0), "seconds": 60.0}),
     "path": Motion(Follow),
+    "course": Motion(Course),
 }
 
 

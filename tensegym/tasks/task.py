@@ -12,12 +12,12 @@ import numpy as np
 from tensegym.design.design import RobotDesign
 from tensegym.design.parameters import Payload
 from tensegym.errors import DesignError, InputError
-from tensegym.physics.terrain import Terrain, longest_reach
+from tensegym.physics.terrain import Ground, Terrain, longest_reach
 from tensegym.robot.engines import ENGINES
 from tensegym.robot.gait import GaitMetrics
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.robot.step_check import LARGEST_TIME_STEP, LEAST_TIME_STEP
-from tensegym.tables import Checked, bounded, choice, fill, noted, parsed
+from tensegym.tables import Checked, bounded, choice, fill, known, noted, parsed
 
 from .bound import Bound
 from .disturbance import Disturbance
@@ -78,9 +78,9 @@ class Task(Checked, error=DesignError):
         """Names of all metrics that an episode of it has."""
         return (*(f.name for f in fields(GaitMetrics)), "drive_load", "mass", *cls.MEASURES)
 
-    @property
-    def ground(self) -> bool | Terrain:
-        """The plane, or bumps further than a robot gets at 1 m/s, some twice what the fastest ones make."""
+    def ground(self, design: RobotDesign) -> bool | Terrain | Ground:
+        """What a robot of a design is put on: the plane, or bumps further than a robot gets at 1 m/s, some twice what
+        the fastest ones make."""
         if not self.roughness:
             return True
         return Terrain(self.roughness, self.correlation_length, reach=_ROOM + self.seconds)
@@ -93,12 +93,13 @@ class Task(Checked, error=DesignError):
 
     def robot(self, design: RobotDesign, gui: bool = False) -> TensegrityRobot:
         """A robot on its ground, in its engine. Raises as TensegrityRobot."""
-        return TensegrityRobot(design, dt=self.dt, ground=self.ground, gui=gui, engine=self.engine)
+        return TensegrityRobot(design, dt=self.dt, ground=self.ground(design), gui=gui, engine=self.engine)
 
     def changed(self: Own, **changes: Any) -> Own:
         """A copy with the fields that are not None replaced; ``reward`` may be a dict of weights to change,
         ``disturb`` one of ranges."""
         given = {name: value for name, value in changes.items() if value is not None}
+        known(given, [f.name for f in fields(self)], f"the task {self.motion!r}", DesignError)
         if isinstance(given.get("disturb"), dict):
             given["disturb"] = fill(Disturbance, given["disturb"], "disturb", DesignError, self.disturb)
         if isinstance(given.get("reward"), dict):

@@ -1,5 +1,7 @@
 """The protocol of engines, on each of them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -8,6 +10,7 @@ from tensegym.design.bodies import design_bodies
 from tensegym.design.design import Payload, RobotDesign
 from tensegym.engine import GROUND, Scene
 from tensegym.errors import DesignError
+from tensegym.physics.box import Box
 from tensegym.physics.terrain import FLAT
 from tensegym.robot.engines import ENGINES, open_world
 
@@ -83,6 +86,49 @@ def test_a_sliding_ball_is_slowed_by_coulombs_force_until_it_rolls(engine):
     _, ((_, rolling, _),) = fall(world, 320)
     assert rolling == pytest.approx(5 / 7 * 2.0, rel=2e-3)
     world.close()
+
+
+def tilted(angle):
+    """A box whose upper side goes through the origin and falls along x, and the turn of it."""
+    turn = Rotation.from_euler("y", angle)
+    return Box(tuple(turn.apply([0, 0, -0.1])), (3.0, 0.5, 0.1), tuple(turn.as_quat())), turn
+
+
+def let_go(engine, body, angle, turn, height):
+    """A body at rest on a tilted box, high over the ground; how fast it goes down after 0.3 s, and where it is above
+    the box."""
+    box, tilt = tilted(angle)
+    ground = FLAT.holding([replace(box, centre=tuple(np.add(box.centre, [0, 0, 5])))])
+    place = np.add(tilt.apply([0, 0, height]), [0, 0, 5])
+    world = one(engine, body, np.array([*place, *(tilt * turn).as_quat()]), ground=ground)
+    _, (velocity,) = fall(world, 300)
+    down, normal = tilt.apply([1, 0, 0]), tilt.apply([0, 0, 1])
+    over = float((world.read()[0][0, :3] - [0, 0, 5]) @ normal)
+    others = {contact.other for _ in range(10) for contact in (fall(world, 1), world.contacts())[1]}
+    world.close()
+    return float(velocity @ down), over, others
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.2])
+def test_a_ball_on_a_box_rests_or_rolls_down_it(engine, angle):
+    """Where it does not slip it is slowed by its spin to 5/7 of what would slide without friction."""
+    radius = BALL.link.shapes[0].size[0]
+    speed, over, others = let_go(engine, BALL, angle, Rotation.identity(), radius)
+    assert speed == pytest.approx(5 / 7 * GRAVITY * np.sin(angle) * 0.3, rel=0.01, abs=1e-6)
+    assert over == pytest.approx(radius, abs=2e-4)
+    assert others == {GROUND}
+
+
+@pytest.mark.parametrize("angle", [0.3, 0.55])
+def test_a_rod_along_a_box_stays_or_slides_by_coulombs_law(engine, angle):
+    """It stays where tan a is below the friction, else it goes down at g (sin a - mu cos a)."""
+    radius = max(shape.size[0] for shape in ROD.link.shapes if not shape.colour)
+    lying = Rotation.from_euler("y", np.pi / 2)
+    speed, over, others = let_go(engine, ROD, angle, lying, radius)
+    pulled, held = GRAVITY * np.sin(angle) * 0.3, FRICTION * GRAVITY * np.cos(angle) * 0.3
+    assert pulled - speed == pytest.approx(min(pulled, held), rel=0.02)
+    assert over == pytest.approx(radius, abs=1e-3)  # MuJoCo lifts a little what slides
+    assert others == {GROUND}
 
 
 def test_bodies_touch_one_another(engine):

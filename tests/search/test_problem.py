@@ -72,7 +72,9 @@ def test_a_space_is_needed():
         problem_from('task = "roll"', "nothing")
 
 
-@pytest.mark.parametrize("name", ["carry", "carry_conditioned", "climb", "climb_untaught", "cross", "roll", "step"])
+@pytest.mark.parametrize(
+    "name", ["carry", "carry_conditioned", "climb", "climb_untaught", "course", "cross", "roll", "step"]
+)
 def test_shipped_task_files_are_sound(name):
     problem = load_problem(name)
     assert problem.task.motion == name.split("_")[0]
