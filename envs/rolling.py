@@ -12,7 +12,8 @@ from gymnasium.utils import EzPickle
 from numpy.typing import NDArray
 
 from tensegym.arrays import FloatArray
-from tensegym.control.observation import Observation, make_observation
+from tensegym.control.observation import Observation
+from tensegym.control.observations import make_observation
 from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import as_design
 from tensegym.design.variation import parse_variation
@@ -59,6 +60,8 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
 
     Observations ``full-goal`` and ``onboard-goal`` end with three entries more: the distance to the place to go to, as
     a part of 4 rod lengths and of 1, at most 1 (the wanted direction points there), and 1 where it is to stop there.
+
+    Observations ``onboard-memory`` and ``onboard-goal-memory`` are three of these: now, and at the two steps before.
 
     With ``vary``, which maps fields of the design to ranges (see `tensegym.design.variation`), the robot is another one
     every ``episodes_per_design`` episodes and at every seeded reset: drawn uniformly, refused ones again. Either

@@ -99,7 +99,7 @@ class Evaluate:
 
 def _text(summaries: dict[str, dict[str, Any]], measures: tuple[str, ...]) -> str:
     header = ["controller", "median L/s", "mean L/s [95 %]", "over half median", "slip share", "(summed)", "tips",
-              "cost of transport", "audit failures"]  # fmt: skip
+              "cost of transport", "s to stride", "drive load", "peak tension N", "audit failures"]  # fmt: skip
     rows = []
     for name, s in summaries.items():
         interval = "[-]" if s["speed_lps_mean_ci95"] is None else "[{:.3f}, {:.3f}]".format(*s["speed_lps_mean_ci95"])
@@ -108,7 +108,8 @@ def _text(summaries: dict[str, dict[str, Any]], measures: tuple[str, ...]) -> st
             name, f"{s['speed_lps_median']:.3f}", f"{s['speed_lps_mean']:.3f} {interval}",
             f"{s['share_over_half_median']:.0%}", f"{s['slip_share_median']:.2f}",
             f"{s['slip_share_sum_median']:.2f}", f"{s['tips_median']:.0f}",
-            "-" if cost is None else f"{cost:.0f}", f"{s['audit_failures']} of {s['episodes']}",
+            "-" if cost is None else f"{cost:.1f}", f"{s['stride_median']:.1f}", f"{s['drive_load_max']:.2f}",
+            f"{s['peak_tension_max']:.0f}", f"{s['audit_failures']} of {s['episodes']}",
         ])  # fmt: skip
     texts = [table(header, rows)]
     if measures:

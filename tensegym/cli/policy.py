@@ -8,7 +8,7 @@ from typing import Any
 
 import tyro
 
-from tensegym.control.observation import make_observation
+from tensegym.control.observations import make_observation
 from tensegym.control.policy import CONTROL_PERIOD, policy_env, policy_folder
 from tensegym.control.policy_file import read_policy
 from tensegym.control.policy_onnx import write_onnx

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,14 +10,11 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
-from tensegym.design.variation import Variation
-from tensegym.errors import DesignError
 from tensegym.physics import drives
 from tensegym.physics.model import DAMPING, STIFFNESS
 from tensegym.robot.energy_check import SPEED_BOUND
 from tensegym.robot.reading import NODE_REACH, Reading, heading_rotation, read
 from tensegym.robot.robot import TensegrityRobot
-from tensegym.tables import show
 
 from .bearing import Bearing
 
@@ -148,51 +144,3 @@ class OnboardObservation(Observation):
         return np.concatenate([
             (axes @ turn.T).ravel(), (rates @ turn.T).ravel() / self.rate_scale, *_drive_readings(robot)
         ])  # fmt: skip
-
-
-class GoalObservation(Observation):
-    """Another observation, and what there is to say of the place to go to beside its direction, which is the heading
-    frame's: how far it is, as a part of four rod lengths and of one, and whether to stop there."""
-
-    def __init__(self, observation: Observation, robot: TensegrityRobot) -> None:
-        self._observation, self._length = observation, robot.design.length
-        self.parts = (*observation.parts, Part("goal", "robot", 1, 3, 1.0))
-
-    def values(self, robot: TensegrityRobot, reading: Reading, bearing: Bearing) -> FloatArray:
-        """As `Observation` has it."""
-        far = bearing.distance / self._length
-        goal = [min(far / 4, 1.0), min(far, 1.0), float(bearing.stay)]
-        return np.concatenate([self._observation.values(robot, reading, bearing), goal])
-
-
-OBSERVATIONS: dict[str, Callable[[TensegrityRobot], Observation]] = {
-    "full": FullObservation,
-    "onboard": OnboardObservation,
-    "full-goal": lambda robot: GoalObservation(FullObservation(robot), robot),
-    "onboard-goal": lambda robot: GoalObservation(OnboardObservation(robot), robot),
-}
-
-
-class ConditionedObservation(Observation):
-    """Another observation, and where the robot's design lies in the ranges that designs vary over."""
-
-    def __init__(self, observation: Observation, robot: TensegrityRobot, variation: Variation) -> None:
-        self._observation = observation
-        self._place = variation.normalised(robot.design)
-        self.parts = (*observation.parts, Part("design", "robot", len(self._place), 1, 1.0))
-
-    def values(self, robot: TensegrityRobot, reading: Reading, bearing: Bearing) -> FloatArray:
-        """As `Observation` has it."""
-        return np.concatenate([self._observation.values(robot, reading, bearing), self._place])
-
-
-def make_observation(kind: str, robot: TensegrityRobot, variation: Variation | None = None) -> Observation:
-    """What is seen of a robot: one of OBSERVATIONS, with its design where designs vary.
-
-    Raises:
-        DesignError: there is no such kind.
-    """
-    if not isinstance(kind, str) or kind not in OBSERVATIONS:
-        raise DesignError(f"observation = {show(kind)} is not one of {', '.join(OBSERVATIONS)}")
-    plain: Observation = OBSERVATIONS[kind](robot)
-    return ConditionedObservation(plain, robot, variation) if variation else plain

@@ -19,7 +19,7 @@ from tensegym.robot.robot import TensegrityRobot
 from tensegym.tables import mapping, one_line, read_yaml, show
 
 from .bearing import Bearing
-from .observation import make_observation
+from .observations import make_observation
 from .policy_file import SETTINGS, WEIGHTS, SavedPolicy, read_policy
 
 FILES = (WEIGHTS, SETTINGS, "config.yaml")

@@ -25,7 +25,7 @@ INVERSE_MASS, INVERSE_TRANSVERSE, INVERSE_AXIAL, SPIN_DAMPING = range(4)
 # Columns of a pin's parameters: the pin in the frames of the first and the second half, its axis in either
 PIN_IN_FIRST, PIN_IN_SECOND, PIN_AXIS = slice(0, 3), slice(3, 6), slice(6, 9)
 # Entries of the totals
-DRIVE_WORK, ELECTRICAL_ENERGY, CENTRE_PATH, FOOT_PATH, FOOT_PATH_SUM = range(5)
+DRIVE_WORK, ELECTRICAL_ENERGY, CENTRE_PATH, FOOT_PATH, FOOT_PATH_SUM, PEAK_TENSION = range(6)
 BLOCK = 8  # columns that a processor takes together; whole blocks leave no remainder to take one by one
 # Rows of a pin's geometry
 FIRST_TO_PIN, SECOND_TO_PIN, AXIS_IN_WORLD, FIRST_Z, SECOND_Z, SECOND_PER_RATE = range(6)
@@ -104,7 +104,7 @@ class State(NamedTuple):
     node_positions: FloatArray
     """(n, 3) in the world, at the poses [m]."""
     totals: FloatArray
-    """(5,) since the last reset, entries DRIVE_WORK..FOOT_PATH_SUM, see readings.Totals."""
+    """(6,) since the last reset, entries DRIVE_WORK..PEAK_TENSION, see readings.Totals."""
 
 
 class Out(NamedTuple):
@@ -157,7 +157,7 @@ def new_state(model: Model, poses: FloatArray, angles: FloatArray) -> State:
         natural=natural,
         drives=np.zeros((model.driven_count, STATE_SIZE)),
         node_positions=np.zeros((nodes, 3)),
-        totals=np.zeros(5),
+        totals=np.zeros(6),
     )
 
 

@@ -36,6 +36,7 @@ class Totals:
     """What has added up since the last reset. Lengths are horizontal [m], energies [J].
 
     foot_path is the mean over the grounded feet of the path of their centres, foot_path_sum the sum over them.
+    peak_tension is the most that any cable has borne [N], since a GaitMeter began where one did.
     """
 
     drive_work: float
@@ -43,6 +44,7 @@ class Totals:
     centre_path: float
     foot_path: float
     foot_path_sum: float
+    peak_tension: float
 
 
 @kernel(**ALLOCATING)

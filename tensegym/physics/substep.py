@@ -12,7 +12,7 @@ from tensegym.compiled import kernel
 from .cable_law import explicit_tensions, implicit_tensions, tension_wrenches
 from .drives import CURRENT, PULLED, VOLTAGE, drive_step
 from .geometry import points_in_world, spring_geometry
-from .model import CENTRE_PATH, DRIVE_WORK, ELECTRICAL_ENERGY, FOOT_PATH, FOOT_PATH_SUM
+from .model import CENTRE_PATH, DRIVE_WORK, ELECTRICAL_ENERGY, FOOT_PATH, FOOT_PATH_SUM, PEAK_TENSION
 from .spin import damp_spins
 from .split_rods import second_poses, split_rod_inertia
 from .terrain import distance_to_ground
@@ -46,6 +46,8 @@ def substep(model, ground, state, out, dt, implicit):
     tension_wrenches(model.spring_bodies, out, tensions)
     damp_spins(model.body_params, state.poses, state.last_poses, dt, out.rotations, out.velocities, out.wrenches)
     _wind(model, state, out, dt)
+    for c in range(len(tensions) - len(model.pin_bodies)):
+        state.totals[PEAK_TENSION] = max(state.totals[PEAK_TENSION], tensions[c])
     _add_paths(model, ground, state, out)
     poses, last_poses = state.poses, state.last_poses
     for b in range(len(poses)):

@@ -27,6 +27,7 @@ class GaitMetrics:
     slip_share: path of the grounded feet's centres, averaged over the grounded feet, over the path of the centre of
     mass: 0 for pure rolling, 1 for a body that skates. slip_share_sum: the same with the feet's paths summed.
     energy: electrical, what the drives draw [J]. cost_of_transport: energy / (m g displacement along), inf if <= 0.
+    peak_tension: the most that any cable bears [N].
     audit_excess: largest part by which kinetic + gravity + elastic energy exceeded the start's plus the drives' work.
     """
 
@@ -41,6 +42,7 @@ class GaitMetrics:
     drive_work: float
     cost_of_transport: float
     audit_excess: float
+    peak_tension: float
 
     @property
     def audit_passed(self) -> bool:
@@ -52,7 +54,7 @@ class GaitMetrics:
         return {name: value if math.isfinite(value) else None for name, value in data.items()}
 
 
-NO_GAIT = GaitMetrics(0.0, 0.0, 0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, math.inf, 0.0)  # of a trial that never began
+NO_GAIT = GaitMetrics(0.0, 0.0, 0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, math.inf, 0.0, 0.0)  # of a trial that never began
 
 
 class DriveMeter:
@@ -87,6 +89,7 @@ class GaitMeter:
         self._start = self._turned_at = robot.centre_of_mass_in_world()
         self._made = 0.0  # m, along the directions before this one
         self._start_time = robot.time
+        robot.forget_peak()
         self._start_totals = robot.totals()
         self._start_energy = robot.energies().total
         self._start_energies = element_energies(robot)
@@ -152,4 +155,5 @@ class GaitMeter:
             drive_work=now.drive_work - start.drive_work,
             cost_of_transport=energy / (self._weight * along) if self._weight * along > 0 else math.inf,
             audit_excess=self._excess,
+            peak_tension=now.peak_tension,
         )

@@ -11,7 +11,7 @@ from tensegym.design.design import RobotDesign
 from tensegym.engine import Uncopied, World
 from tensegym.physics.drives import ROTOR_ANGLE
 from tensegym.physics.geometry import points_at
-from tensegym.physics.model import STIFFNESS, Model, new_out, new_state
+from tensegym.physics.model import PEAK_TENSION, STIFFNESS, Model, new_out, new_state
 from tensegym.physics.readings import (
     Energies,
     Totals,
@@ -40,6 +40,8 @@ class RobotState(Uncopied):
         self.design, self.model, self.world, self.dt = design, model, world, dt
         self.gravity = np.array([0.0, 0.0, -world.scene.gravity])
         self.time = 0.0
+        self.resets = 0
+        """How many."""
         self.sensors: Sensors | None = None
         """What observations come through; None for exact ones. A reset takes them away."""
         self._as_made = model.spring_params.copy(), model.drive_params.copy()
@@ -57,6 +59,7 @@ class RobotState(Uncopied):
         pin_rates (p,) [rad/s]; velocities (b, 6) of the bodies, None at rest.
         """
         state, self.sensors = self._state, None
+        self.resets += 1
         self.model.spring_params[:], self.model.drive_params[:] = self._as_made
         state.natural[:] = self.model.rest_lengths
         state.drives[:], state.totals[:], self.time = 0.0, 0.0, 0.0
@@ -147,6 +150,10 @@ class RobotState(Uncopied):
             return 0.0
         stiffness = self.model.spring_params[self.model.first_flexure :, STIFFNESS]
         return float(0.5 * stiffness @ self.flexure_angles**2)
+
+    def forget_peak(self) -> None:
+        """Let the largest tension of the totals be that from now on."""
+        self._state.totals[PEAK_TENSION] = 0.0
 
     def totals(self) -> Totals:
         """What has added up since the last reset."""

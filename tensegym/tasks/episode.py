@@ -59,6 +59,8 @@ class Episode(Uncopied):
         self.diverged = False
         self.gait: GaitMetrics = NO_GAIT
         self.drives = DriveMeter(robot)
+        self.ways: list[float] = [0.0]
+        """Made along what was wanted since the start [rod lengths], one entry a control step."""
         try:
             self.goal = task.begin(robot, self.start, rng)
             self.reading: Reading = read(robot)
@@ -105,6 +107,7 @@ class Episode(Uncopied):
         self.drives.update()
         self.gait = self.meter.metrics()
         way = self.goal.made(self.bearing, before.centre[:2], reading.centre[:2])
+        self.ways.append(self.ways[-1] + way / self._length)
         self.goal.update(robot, way, robot.time - self._time)
         self.ended, self._time = self.task.over(self), robot.time
         terms = self._rewards(way)

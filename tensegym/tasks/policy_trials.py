@@ -41,7 +41,7 @@ def policy_setup(
     env = policy_env(policy)
     if task is None:
         refuse_code(env.get("task"), f"the policy {policy}")
-        own = {name: env.get(name) for name in ("dt", "settle", "slope", "reward", "engine")}
+        own = {name: env.get(name) for name in ("dt", "settle", "slope", "reward", "disturb", "engine")}
         task = as_task(env.get("task", "roll")).changed(**own, seconds=EPISODE_SECONDS)
     seconds = task.seconds if seconds is None else seconds
     task = task.changed(dt=dt, seconds=seconds, patience=seconds, engine=engine)

@@ -15,6 +15,7 @@ from tensegym.robot.robot import TensegrityRobot
 
 from .episode import Episode, Watcher
 from .start import Start
+from .stride import time_to_stride
 from .task import Task
 
 TIME_LIMIT, GIVEN_UP = "time limit", "given up"
@@ -29,7 +30,7 @@ class Result(NamedTuple):
     gait: GaitMetrics
     """Until the last step that could be trusted."""
     measures: dict[str, float]
-    """drive_load, mass [kg], weight [N] and what the task measures itself."""
+    """drive_load, stride [s], mass [kg], weight [N] and what the task measures itself."""
     ended: str
     diverged: bool
     fallen: bool = False
@@ -108,10 +109,19 @@ def _drive(episode: Episode, controller: Controller, watcher: Watcher | None) ->
 
 def _result(episode: Episode, seed: int) -> Result:
     design = episode.robot.design
-    measures = {"mass": design.mass, "weight": design.mass * design.gravity, "drive_load": episode.drives.rms_current}
+    measures = {"mass": design.mass, "weight": design.mass * design.gravity, "drive_load": episode.drives.rms_current,
+                "stride": _stride(episode)}  # fmt: skip
     task = episode.task
     fallen = not episode.diverged and has_fallen(episode.robot, FLAT)
     sound = episode.sound and not fallen
     measures |= task.measures(episode) if sound else {n: task.WORST.get(n, 0.0) for n in task.MEASURES}
     return Result(seed, episode.start, episode.gait, measures, str(episode.ended), episode.diverged, fallen,
                   episode.fault)
+
+
+def _stride(episode: Episode) -> float:
+    """Seconds until it goes as fast as it will; the whole episode where it never does."""
+    steps, seconds = len(episode.ways) - 1, episode.gait.duration
+    if episode.diverged or steps < 2:
+        return seconds
+    return min(seconds, time_to_stride(np.array(episode.ways), seconds / steps)[0])

@@ -76,7 +76,7 @@ class Task(Checked, error=DesignError):
     @classmethod
     def metrics(cls) -> tuple[str, ...]:
         """Names of all metrics that an episode of it has."""
-        return (*(f.name for f in fields(GaitMetrics)), "drive_load", "mass", *cls.MEASURES)
+        return (*(f.name for f in fields(GaitMetrics)), "drive_load", "stride", "mass", *cls.MEASURES)
 
     def ground(self, design: RobotDesign) -> bool | Terrain | Ground:
         """What a robot of a design is put on: the plane, or bumps further than a robot gets at 1 m/s, some twice what

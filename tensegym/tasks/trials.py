@@ -115,9 +115,8 @@ def iterate(setup: Setup, controller: Controller, seeds: Sequence[int]) -> Gener
 def summarise(results: Sequence[Result]) -> dict[str, Any]:
     """Median, mean with its 95 % interval (normal; None of one trial), and the counts a gait is judged by.
 
-    The way of a trial that diverged, fell flat or broke the energy audit does not count: its speed is taken as 0.
-    The way of a trial that diverged or broke the energy audit does not count: its speed, and what the task measures, is
-    taken as 0, or the worst.
+    The way of a trial that diverged, fell flat or broke the energy audit does not count: its speed, and what the task
+    measures, is taken as 0, or the worst.
     """
     gaits = [result.gait for result in results]
     sound = np.array([result.sound for result in results])
@@ -135,6 +134,9 @@ def summarise(results: Sequence[Result]) -> dict[str, Any]:
         "share_over_half_median": float((speed > np.median(speed) / 2).mean()),
         "slip_share_median": float(np.median([gait.slip_share for gait in gaits])),
         "slip_share_sum_median": float(np.median([gait.slip_share_sum for gait in gaits])),
+        "stride_median": float(np.median([result.measures["stride"] for result in results])),
+        "drive_load_max": float(max(result.measures["drive_load"] for result in results)),
+        "peak_tension_max": float(max(gait.peak_tension for gait in gaits)),
         "tips_median": float(np.median([gait.tips for gait in gaits])),
         "cost_of_transport_median": float(np.median(costs)) if costs else None,
         "audit_failures": sum(not gait.audit_passed for gait in gaits),

@@ -175,7 +175,7 @@ def test_a_faces_turn_under_the_centre_counts_as_a_tip():
 
 
 def test_plain_types_for_json_with_none_for_infinite():
-    gait = GaitMetrics(1.0, -0.1, -0.14, 0.1, 2, 0.3, 0.9, 5.0, 1.0, math.inf, 0.02)
+    gait = GaitMetrics(1.0, -0.1, -0.14, 0.1, 2, 0.3, 0.9, 5.0, 1.0, math.inf, 0.02, 50.0)
     data = json.loads(json.dumps(gait.as_dict(), allow_nan=False))
     assert data["cost_of_transport"] is None
     assert data["audit_passed"] is False
@@ -191,3 +191,15 @@ def test_a_robot_at_rest_on_a_square_does_not_tip():
             robot.step(20)
             meter.update()
         assert meter.tips == 0
+
+
+def test_the_peak_tension_is_the_most_of_all_time_steps_since_the_trial_began():
+    with TensegrityRobot(dt=2e-3) as robot:
+        robot.reset(0, height=1.0)  # an impact before the trial, which does not count
+        robot.step(1000)
+        meter, most = GaitMeter(robot, X), 0.0
+        robot.command(robot.command_limit)
+        for _ in range(200):
+            robot.step(1)
+            most = max(most, robot.tensions.max())
+        assert meter.metrics().peak_tension == most > 10.0

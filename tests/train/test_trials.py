@@ -25,8 +25,9 @@ from tests.conftest import assert_refused
 
 
 def result(speed, *, passed=True, diverged=False, cost=10.0):
-    gait = GaitMetrics(20.0, 0.7 * speed, speed, 1.0, 4, speed / 2, speed, 1.0, 1.0, cost, 0.0 if passed else 0.02)
-    return Result(0, Start(0, 0.0, 0.0), gait, {}, "time limit", diverged)
+    gait = GaitMetrics(20.0, 0.7 * speed, speed, 1.0, 4, speed / 2, speed, 1.0, 1.0, cost, 0.0 if passed else 0.02,
+                       100 * speed)  # fmt: skip
+    return Result(0, Start(0, 0.0, 0.0), gait, {"drive_load": speed / 4, "stride": 30 * speed}, "time limit", diverged)
 
 
 def test_summary_of_rows_made_by_hand():
@@ -41,6 +42,9 @@ def test_summary_of_rows_made_by_hand():
     assert summary["slip_share_median"] == pytest.approx(0.15)
     assert summary["slip_share_sum_median"] == pytest.approx(0.3)
     assert summary["speed_mps_median"] == pytest.approx(0.21)
+    assert summary["stride_median"] == pytest.approx(9.0)
+    assert summary["drive_load_max"] == pytest.approx(0.25)
+    assert summary["peak_tension_max"] == pytest.approx(100.0)
     assert (summary["audit_failures"], summary["terminated"]) == (0, 0)
 
 
