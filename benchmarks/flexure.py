@@ -46,12 +46,14 @@ class Run:
     seconds: float
 
 
-def exudyn_sweep(hinge: Hinge, moment: float, elements: int, *, sparse: bool = False, modified: bool = False,
-                 steps: int = POINTS) -> Run:  # fmt: skip
-    """The hinge in exudyn: ANCF cables clamped to a rigid tip that takes ``moment`` [N m] in even load steps."""
+def exudyn_sweep(hinge: Hinge, moment: float, elements: int, *, force: tuple[float, float] = (0.0, 0.0),
+                 sparse: bool = False, modified: bool = False, steps: int = POINTS) -> Run:  # fmt: skip
+    """The hinge in exudyn: ANCF cables clamped to a rigid tip that takes ``moment`` [N m] and ``force`` [N] in even
+    load steps."""
     import exudyn as exu
     from exudyn.utilities import (
         Cable2D,
+        Force,
         GenericJoint,
         MarkerBodyRigid,
         ObjectGround,
@@ -87,6 +89,7 @@ def exudyn_sweep(hinge: Hinge, moment: float, elements: int, *, sparse: bool = F
             system.AddObject(GenericJoint(markerNumbers=[on_body, on_cable], constrainedAxes=[1, 1, 0, 0, 0, 1]))
     loaded = system.AddMarker(MarkerBodyRigid(bodyNumber=tip))
     system.AddLoad(Torque(markerNumber=loaded, loadVector=[0, 0, moment]))
+    system.AddLoad(Force(markerNumber=loaded, loadVector=[*force, 0]))
     system.Assemble()
     settings = exu.SimulationSettings()
     settings.solution.file.write = False

@@ -5,6 +5,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "curves": ("tensegym.cli.flexure.curves:Curves", "torque against angle, drift, stiffness diagrams: PNG, CSV"),
     "fit": ("tensegym.cli.flexure.fit:Fit", "fit a joint model to a hinge or to measured data"),
     "travel": ("tensegym.cli.flexure.travel:Travel", "stiffness, stress and buckling along a hinge's travel"),
+    "guide": ("tensegym.cli.flexure.guide:Guide", "a parallelogram by FEM, beam constraint model, pseudo-rigid body"),
     "track": ("tensegym.cli.flexure.track:Track", "pictures of a stand in, angle and position out, as CSV"),
     "stand": ("tensegym.cli.flexure.stand:Stand", "the paper's test stand in PyBullet: pull, track, fit, let go"),
     "solve": ("tensegym.cli.flexure.solve:Solve", "loads in, poses out, by any of the models"),

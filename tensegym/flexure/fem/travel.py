@@ -73,22 +73,31 @@ def turned(hinge: Hinge, theta: FloatArray, *, axial: float = 0.0, elements: int
     if len(bad):
         raise FlexureError(f"{hinge.name}: turned towards {np.degrees(theta[bad[0]]):.3g} deg it "
                            f"{solution.reason(int(bad[0]))}; lower max_angle or the axial force")  # fmt: skip
-    return _along(hinge, solution, TURN, hinge.arm * np.sin(theta) * solution.force[:, 1], elements)
+    return along(hinge, solution, TURN, hinge.arm * np.sin(theta) * solution.force[:, 1], elements)
 
 
 def pushed(hinge: Hinge, travel: FloatArray, *, axial: float = 0.0, elements: int = ELEMENTS) -> Travel:
     """Along travels (n,) [m] of the tip under a force in y, as ``push``."""
     solution = push(hinge, travel, axial=axial, elements=elements)
-    return _along(hinge, solution, Y, np.zeros(len(solution.theta)), elements)
+    return along(hinge, solution, Y, elements=elements)
 
 
-def _along(hinge: Hinge, solution: Solution, driven: int, lever: FloatArray, elements: int) -> Travel:
-    mesh = mesh_of(hinge, elements)
+def along(hinge: Hinge, solution: Solution, driven: int, lever: FloatArray | float = 0.0,
+          elements: int = ELEMENTS) -> Travel:  # fmt: skip
+    """Along converged states whose nodes were kept.
+
+    Args:
+        hinge, solution: what was solved.
+        driven: Y or TURN.
+        lever: (n,) as ``load_factor`` takes it [N m].
+        elements: those it was solved with.
+    """
+    mesh, levers = mesh_of(hinge, elements), np.broadcast_to(lever, len(solution.theta))
     inside, outside, stress, factors = [], [], [], []
     for i in range(len(solution.theta)):
         mem = memory_at(mesh, solution, i)
         inside.append(tip_stiffness(mesh, mem))
         outside.append(out_of_plane_stiffness(hinge, mesh, mem))
         stress.append(largest_stress(hinge, mesh, mem))
-        factors.append(load_factor(mesh, mem, float(lever[i])))
+        factors.append(load_factor(mesh, mem, float(levers[i])))
     return Travel(solution.states(), driven, np.array(inside), np.array(outside), tuple(stress), np.array(factors))

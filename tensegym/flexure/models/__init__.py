@@ -10,6 +10,8 @@
     joint_fit.py           fit_joint; joint_file.py: joints in and out of JSON
     load_solver.py         where a model stands under a wrench; model_choice.py: which model is enough
     rod_pin.py             RodPin: the pin that stands for a hinge inside a rod
+    guide_models.py        a parallelogram's closed forms (beam constraint model, pseudo-rigid body), and
+                           guide_comparison.py: all models of one; notch_formulas.py: compliance of notches
     sweep_times.py         seconds of a sweep by the FEM and by the potential
 
 Every fitting function takes a ``States`` and the rest length L [m] as its first two arguments.

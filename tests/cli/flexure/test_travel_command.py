@@ -44,3 +44,14 @@ def test_travel_of_a_hinge(cli):
 ])  # fmt: skip
 def test_travel_refuses(cli, options, words):
     assert_refused(cli("flexure", "travel", *options), *words)
+
+
+def test_guide(cli, tmp_path):
+    pytest.importorskip("matplotlib")
+    picture = tmp_path / "guide.png"
+    status, text, _ = cli("flexure", "guide", "--axial-N", 30, "--travel-mm", 2, "--out", picture)
+    assert status == 0 and picture.stat().st_size > 10_000
+    assert "beam constraint model" in text and "pseudo-rigid body" in text and "beyond the box" in text
+    assert_refused(cli("flexure", "guide", "tfch"), "tfch is no parallelogram", "take parallel-guide")
+    assert_refused(cli("flexure", "guide", "--travel-mm", 0), "travel_mm = 0")
+    assert_refused(cli("flexure", "guide", "--axial-N", -500), "buckles at", "lower the travel or the load")
