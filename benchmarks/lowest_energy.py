@@ -12,6 +12,7 @@ from scipy.optimize import minimize
 
 from tensegym.arrays import FloatArray, IntArray
 from tensegym.design.design import RobotDesign
+from tensegym.design.groups import column
 from tensegym.structure.faces import resting_rotation
 
 GROUND = 1e4  # weights over lengths: the stiffness of the ground, and of its grip
@@ -32,7 +33,7 @@ def lowest_energy(design: RobotDesign, triangle: IntArray, grip: bool) -> FloatA
     standing = np.flatnonzero(nodes[:, 2] - radius < 1e-6) if grip else np.zeros(0, dtype=int)
     held, first = nodes[standing, :2].copy(), nodes
     pairs, natural = structure.cables, design.cable_natural_lengths + 2 * design.attachment_radius
-    stiffness, two_way = design.elastic_cable.stiffness, design.elastic_cable.two_way
+    stiffness, two_way = column(design.each_cable, "stiffness"), column(design.each_cable, "two_way") > 0
     outward = (middles - centre) / np.linalg.norm(middles - centre, axis=1)[:, None]
 
     def shape(unknown: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -49,11 +50,11 @@ def lowest_energy(design: RobotDesign, triangle: IntArray, grip: bool) -> FloatA
         of_mids, of_ball = np.zeros_like(mids), np.zeros(3)
         spans = nodes[pairs[:, 1]] - nodes[pairs[:, 0]]
         lengths = np.linalg.norm(spans, axis=1)
-        stretch = lengths - natural if two_way else np.maximum(lengths - natural, 0)
+        stretch = np.where(two_way, lengths - natural, np.maximum(lengths - natural, 0))
         pull = (stiffness * stretch / lengths)[:, None] * spans
         np.add.at(force, pairs[:, 1], pull)
         np.add.at(force, pairs[:, 0], -pull)
-        total = 0.5 * stiffness * float(stretch @ stretch) + float(weights @ mids[:, 2])
+        total = 0.5 * float(stiffness @ stretch**2) + float(weights @ mids[:, 2])
         of_mids[:, 2] += weights
         under = np.maximum(radius - nodes[:, 2], 0)
         total += 0.5 * ground * float(under @ under)

@@ -85,7 +85,7 @@ class Compare:
 
     def _check(self, design: RobotDesign) -> None:
         """Raise for what does not fit the robot, before anything is simulated or written."""
-        most = design.stiff_cable.max_pull
+        most = design.deepest_pull
         for depth in self.depths:
             if not 0 < depth <= most:
                 raise InputError(f"depths: {depth!r} is outside (0, {most:g}], the design's max_pull")

@@ -51,8 +51,8 @@ class Step:
 
     def run(self) -> Report:
         design = as_design(self.design)
-        if not 0 < self.depth <= design.stiff_cable.max_pull:
-            limit = design.stiff_cable.max_pull
+        limit = design.deepest_pull
+        if not 0 < self.depth <= limit:
             raise InputError(f"depth = {self.depth!r} is outside (0, {limit:g}], the design's max_pull")
         if abs(PERIOD / self.dt - round(PERIOD / self.dt)) > 1e-6:
             raise InputError(f"dt = {self.dt!r} s must divide {PERIOD} s")
@@ -104,7 +104,7 @@ class Step:
                 bar.total = total
                 bar.update(done - bar.n)
 
-            tips = tip_table(robot, (self.depth, robot.design.stiff_cable.max_pull), progress=progress)
+            tips = tip_table(robot, (self.depth, robot.design.deepest_pull), progress=progress)
         self.out.mkdir(parents=True, exist_ok=True)
         save_table(tips, self.out / "tips.json")
         names = robot.faces.names()

@@ -62,7 +62,7 @@ def steps(
 
 def _on_edges(design: RobotDesign, dt: float, rows: list[tuple[int, Pull, int]], jobs: int) -> list[bool]:
     """Of pulls and the faces that they end on: whether they end elsewhere in the same engine, a little off."""
-    deepest = design.stiff_cable.max_pull
+    deepest = design.deepest_pull
     trials = [trial for face, pull, _ in rows for trial in (
         *(Trial(ENGINES[0], dt, face, replace(pull, depth=min(factor * pull.depth, deepest))) for factor in DEPTHS),
         Trial(ENGINES[0], dt / 2, face, pull))]  # fmt: skip

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
+from tensegym.design.groups import column
 from tensegym.physics import drives
 from tensegym.physics.model import DAMPING, STIFFNESS
 from tensegym.robot.energy_check import SPEED_BOUND
@@ -63,10 +64,10 @@ class Observation:
 
 
 def _drive_readings(robot: TensegrityRobot) -> list[FloatArray]:
-    drive, design = robot.drives, robot.design.drive
+    drive, kinds = robot.drives, robot.design.each_drive
     angle = robot.drive_angles / robot.command_limit
-    speed, current = drive[:, drives.ROTOR_SPEED] / design.speed_limit, drive[:, drives.CURRENT] / design.current_limit
-    return [2 * angle - 1, speed, current]
+    speed = drive[:, drives.ROTOR_SPEED] / column(kinds, "speed_limit")
+    return [2 * angle - 1, speed, drive[:, drives.CURRENT] / column(kinds, "current_limit")]
 
 
 ANGLE_BOUND = 2.0  # a spool overshoots its commanded range by less than half of it
@@ -93,7 +94,7 @@ class FullObservation(Observation):
         nodes, cables = len(robot.model.node_bodies), len(robot.tensions)
         self.length = robot.design.length
         cable = robot.model.spring_params[:, STIFFNESS : DAMPING + 1]
-        self.tension_scale = max(1.0, 5 * robot.design.elastic_cable.pretension)
+        self.tension_scale = max(1.0, 5 * max((c.pretension for c in robot.design.each_cable), default=0.0))
         reach = 2 * NODE_REACH * self.length
         most = float((cable[:, 0] * reach + cable[:, 1] * SPEED_BOUND).max()) / self.tension_scale
         self.parts = (

@@ -9,6 +9,7 @@ from itertools import combinations
 import numpy as np
 
 from tensegym.arrays import FloatArray
+from tensegym.design.groups import column
 from tensegym.errors import InputError
 from tensegym.robot.fallen import has_fallen
 from tensegym.robot.robot import TensegrityRobot
@@ -38,7 +39,7 @@ class Pull(Checked, error=InputError):
         """Commanded spool angles (w,) [rad] at ``time`` [s] into the pull."""
         angles = np.zeros(len(robot.drives))
         if time < self.pull_time:
-            full = robot.design.stiff_cable_lengths / robot.design.drive.spool_radius
+            full = robot.design.stiff_cable_lengths / column(robot.design.each_drive, "spool_radius")
             angles[list(self.drives)] = self.depth * full[list(self.drives)]
         return angles
 

@@ -58,7 +58,7 @@ class Walker:
                 f"the walker's table is of a robot with {tabled[0]} faces and {tabled[1]} drives, this one has "
                 f"{here[0]} and {here[1]}; take the pattern generator (kind = 'cpg')"
             )
-        self._deepest = robot.design.stiff_cable.max_pull
+        self._deepest = robot.design.deepest_pull
         self._scale = self._settings.depth * self._deepest / max(tip.pull.depth for tip in self._table)
         self._by_face: dict[int, list[Tip]] = {}
         for tip in self._table:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from .design import RobotDesign
+from .groups import group_names
 from .parameters import Payload, Rod, RodFlexure
 
 if TYPE_CHECKING:
@@ -79,12 +80,13 @@ def _rod_names(design: RobotDesign) -> list[str]:
     """(r,) one name for all rods that are equal."""
     lengths = design.standing.rod_lengths.round(9)
     kinds = sorted(set(lengths))
+    groups = group_names(design.rods, design.structure.rods)
     names = []
-    for index, length in enumerate(lengths):
+    for index, (length, group) in enumerate(zip(lengths, groups, strict=True)):
         kind = "active" if index in design.active_rods else "passive"
         suffix = "" if len(kinds) == 1 else f"_{kinds.index(length) + 1}"
         split = "_split" if index in design.flexible_rods else ""
-        names.append(f"{kind}_rod{split}{suffix}")
+        names.append(f"{kind}_rod{split}{'_' * bool(group)}{group}{suffix}")
     return names
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,8 +14,9 @@ from tensegym.structure import structure as structures
 from tensegym.structure.equilibrium import check_balance
 from tensegym.structure.form_finding import form_find
 from tensegym.structure.structure import Structure
-from tensegym.tables import bounded, check_fields, noted, one_line
+from tensegym.tables import bounded, check_fields, noted, one_line, parsed
 
+from .groups import Group, check_groups, column, groups_from, of_members
 from .parameters import Drive, ElasticCable, Payload, Rod, RodFlexure, StiffCable
 from .shape import Shape, check_shape, shape_of
 
@@ -43,6 +44,12 @@ class RobotDesign:
     drive: Drive = noted(Drive(), "of every stiff cable")
     payload: Payload | None = noted(None, "a ball in the middle")
     flexure: RodFlexure | None = noted(None, "a hinge that splits rods")
+    cables: tuple[Group, ...] = parsed(partial(groups_from, "cables"), (), "groups of elastic cables, by name: their "
+                                       "pairs, and what differs from elastic_cable")
+    rods: tuple[Group, ...] = parsed(partial(groups_from, "rods"), (), "groups of rods, by name: their pairs, and what "
+                                     "differs from passive_rod or active_rod")
+    drives: tuple[Group, ...] = parsed(partial(groups_from, "drives"), (), "groups of stiff cables with their drives, "
+                                       "by name: their pairs, and what differs from drive and stiff_cable")
     attachment_radius: float = bounded(0, 0.1, 0.004, "m", "cables are tied this far from the rod's axis")
     spin_damping: float = bounded(0, 1, 1e-4, "N m s/rad", "resists a rod's spin about its own axis")
     friction: float = bounded(0, 10, 0.8, "", "Coulomb coefficient, feet and rods against ground and each other")
@@ -50,35 +57,43 @@ class RobotDesign:
 
     def __post_init__(self) -> None:
         check_fields(self, DesignError)
-        standing = self.structure
-        if self.elastic_cable.natural_length is None:
+        for kind, pairs in (("cables", self.structure.cables), ("rods", self.structure.rods),
+                            ("drives", self.structure.stiff_cables)):  # fmt: skip
+            check_groups(kind, getattr(self, kind), pairs)
+        standing = given = self.built
+        tensions = self.rest_tensions
+        if not np.isnan(tensions).any():
             if self.form_finding:
                 standing = form_find(
-                    standing, self.elastic_cable.pretension,
-                    payload_tension=self.payload.pretension if self.payload else 0.0,
+                    given, tensions, payload_tension=self.payload.pretension if self.payload else 0.0,
                 )
             else:
-                check_balance(standing, self.elastic_cable.pretension)
+                check_balance(given, tensions)
         object.__setattr__(self, "_standing", standing)
-        shortest = standing.lengths(standing.cables).min(initial=1.0) - 2 * self.attachment_radius
-        if self.cable_natural_lengths.min(initial=1.0) <= 0:
-            limit = self.elastic_cable.stiffness * shortest
+        self._check_lengths()
+        check_shape(self.shape, standing, tensions)
+        object.__setattr__(self, "_rod_pins", {})
+        try:
+            self._check_flexures()
+        except FlexureError as error:
+            raise DesignError(one_line(f"RodFlexure: {error}")) from error
+
+    def _check_lengths(self) -> None:
+        """Refuse cables that their pretension stretches from nothing."""
+        free = self.standing.lengths(self.standing.cables) - 2 * self.attachment_radius
+        broken = np.flatnonzero(self.cable_natural_lengths <= 0)
+        if len(broken):
+            worst = broken[np.argmin(free[broken])]
+            cable, limit = self.each_cable[worst], self.each_cable[worst].stiffness * free[worst]
             raise DesignError(
-                f"ElasticCable.pretension = {self.elastic_cable.pretension!r} stretches a cable of {shortest:.4g} m "
-                f"from nothing; at stiffness {self.elastic_cable.stiffness:g} N/m it must be below {limit:.4g} N"
+                f"ElasticCable.pretension = {cable.pretension!r} stretches a cable of {free[worst]:.4g} m "
+                f"from nothing; at stiffness {cable.stiffness:g} N/m it must be below {limit:.4g} N"
             )
         if self.payload is not None and self.payload_natural_length <= 0:
             raise DesignError(
                 f"Payload.pretension = {self.payload.pretension!r} leaves its cables no natural length "
                 f"({self.payload_natural_length:.4g} m); lower the pretension or the radius, or raise the stiffness"
             )
-
-        check_shape(self.shape, standing, self.elastic_cable.pretension)
-        object.__setattr__(self, "_rod_pins", {})
-        try:
-            self._check_flexures()
-        except FlexureError as error:
-            raise DesignError(one_line(f"RodFlexure: {error}")) from error
 
     def _check_flexures(self) -> None:
         """Refuse rods that the prestress would buckle, and hinges that no pin stands for."""
@@ -113,9 +128,8 @@ class RobotDesign:
     def shape(self) -> Shape:
         """How far form finding moved the nodes, and whether the prestress holds what it made; payloads and flexures
         left out."""
-        cable = self.elastic_cable
-        tension = cable.pretension if cable.natural_length is None else 0.0
-        return shape_of(self.structure, self.standing, tension, cable.stiffness, self.attachment_radius)
+        stiffness = column(self.each_cable, "stiffness")
+        return shape_of(self.built, self.standing, self.rest_tensions, stiffness, self.attachment_radius)
 
     @cached_property
     def active_rods(self) -> IntArray:
@@ -123,9 +137,48 @@ class RobotDesign:
         driven = np.isin(self.structure.rods, self.structure.stiff_cables[:, 0]).any(axis=1)
         return frozen(np.flatnonzero(driven))
 
+    @cached_property
+    def each_cable(self) -> tuple[ElasticCable, ...]:
+        """(c,) what each elastic cable is, by its group."""
+        return of_members(self.cables, self.structure.cables, len(self.structure.cables) * [self.elastic_cable])
+
+    @cached_property
+    def each_rod(self) -> tuple[Rod, ...]:
+        """(r,) what each rod is."""
+        rods = range(len(self.structure.rods))
+        common = [self.active_rod if rod in self.active_rods else self.passive_rod for rod in rods]
+        return of_members(self.rods, self.structure.rods, common)
+
+    @cached_property
+    def each_stiff_cable(self) -> tuple[StiffCable, ...]:
+        """(w,) what each stiff cable is."""
+        pairs = self.structure.stiff_cables
+        return of_members(self.drives, pairs, len(pairs) * [self.stiff_cable])
+
+    @cached_property
+    def each_drive(self) -> tuple[Drive, ...]:
+        """(w,) what each drive is."""
+        return of_members(self.drives, self.structure.stiff_cables, len(self.structure.stiff_cables) * [self.drive])
+
+    @property
+    def deepest_pull(self) -> float:
+        """That all drives may make, as a part of their cables' rest lengths."""
+        return min((cable.max_pull for cable in self.each_stiff_cable), default=self.stiff_cable.max_pull)
+
+    @cached_property
+    def built(self) -> Structure:
+        """The structure as given, its rods of the lengths that they are given."""
+        lengths = [np.nan if rod.length is None else rod.length for rod in self.each_rod]
+        return self.structure.with_rod_lengths(lengths)
+
+    @cached_property
+    def rest_tensions(self) -> FloatArray:
+        """(c,) of the elastic cables at rest [N]; NaN where a natural length is given."""
+        return frozen(np.array([c.pretension if c.natural_length is None else np.nan for c in self.each_cable], float))
+
     def rod(self, index: int) -> Rod:
-        """The kind of rod at this index."""
-        return self.active_rod if index in self.active_rods else self.passive_rod
+        """What the rod at this index is."""
+        return self.each_rod[index]
 
     @cached_property
     def flexible_rods(self) -> IntArray:
@@ -141,7 +194,7 @@ class RobotDesign:
         span = nodes[cables[:, 1]] - nodes[cables[:, 0]]
         lengths = np.linalg.norm(span, axis=1)
         stretch = lengths - 2 * self.attachment_radius - self.cable_natural_lengths
-        pull = (self.elastic_cable.stiffness * stretch / lengths)[:, None] * span
+        pull = (column(self.each_cable, "stiffness") * stretch / lengths)[:, None] * span
         forces = np.zeros_like(nodes)
         np.add.at(forces, cables[:, 0], pull)
         np.add.at(forces, cables[:, 1], -pull)
@@ -184,12 +237,11 @@ class RobotDesign:
     @property
     def cable_natural_lengths(self) -> FloatArray:
         """(c,) between attachment points [m]."""
-        cable = self.elastic_cable
-        count = len(self.structure.cables)
-        if cable.natural_length is not None:
-            return np.full(count, cable.natural_length - 2 * self.attachment_radius)
+        cables = self.each_cable
+        given = np.array([np.nan if c.natural_length is None else c.natural_length for c in cables], dtype=float)
         rest = self.standing.lengths(self.standing.cables) - 2 * self.attachment_radius
-        return rest - cable.pretension / cable.stiffness
+        found = rest - column(cables, "pretension") / column(cables, "stiffness")
+        return np.where(np.isnan(given), found, given - 2 * self.attachment_radius)
 
     @property
     def stiff_cable_lengths(self) -> FloatArray:
@@ -216,7 +268,7 @@ class RobotDesign:
     @property
     def length(self) -> float:
         """L, the longest rod [m]: the unit of gait speeds."""
-        return float(self.structure.rod_lengths.max())
+        return float(self.built.rod_lengths.max())
 
     def with_(self, **changes: object) -> RobotDesign:
         """A copy with some fields replaced, validated again."""

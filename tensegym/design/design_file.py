@@ -7,6 +7,9 @@
     stiffness = 400.0             # SI units; `tensegym fields design` lists all fields
     [payload]                     # a section makes one; leave it out for none
     [flexure]                     # likewise: rods split by a flexure hinge
+    [cables.vertical]             # a group of cables that differ; also [rods.NAME], [drives.NAME], see groups.py
+    pairs = [[1, 5], [2, 6]]
+    stiffness = 500.0
 """
 
 from __future__ import annotations
@@ -15,6 +18,7 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import tomli_w
 
 from tensegym.errors import DesignError
@@ -37,6 +41,7 @@ from tensegym.tables import (
 )
 
 from .design import PRESETS, RobotDesign
+from .groups import KINDS, MEMBERS, table_of
 
 _MEMBERS = ("rods", "cables", "stiff_cables")
 
@@ -109,12 +114,40 @@ def design_to_dict(design: RobotDesign) -> dict[str, Any]:
         if isinstance(value, Structure):
             members = {m: (getattr(value, m) + 1).tolist() for m in _MEMBERS}
             data[f.name] = {"nodes": value.nodes.tolist(), **members}
+        elif f.name in KINDS:
+            if value:
+                data[f.name] = {group.name: table_of(group) for group in value}
         elif is_dataclass(value):
             group = {g.name: getattr(value, g.name) for g in fields(value)}
             data[f.name] = {k: v for k, v in group.items() if v is not None}
         elif value is not None:
             data[f.name] = value
     return data
+
+
+def every_value(design: RobotDesign) -> dict[str, Any]:
+    """`design_to_dict` with what groups have of all members' values, and the lengths of rods, written out."""
+    data = design_to_dict(design)
+    for kind, groups in data.items():
+        if kind in KINDS:
+            for name, table in groups.items():
+                groups[name] = {**_of_group(design, kind, table["pairs"][0]), **table}
+    lengths = design.built.rod_lengths.tolist()
+    passive = np.setdiff1d(np.arange(len(lengths)), design.active_rods)
+    for kind, rows in (("active_rod", design.active_rods), ("passive_rod", passive)):
+        if len(rows):
+            data[kind].setdefault("length", lengths[rows[0]])
+    return data
+
+
+def _of_group(design: RobotDesign, kind: str, pair: list[int]) -> dict[str, Any]:
+    """Values of the member that joins a pair of nodes, from 1."""
+    rows = (getattr(design.structure, MEMBERS[kind]) + 1).tolist()
+    row = next(row for row, members in enumerate(rows) if set(members) == set(pair))
+    parts = {"cables": (design.each_cable,), "rods": (design.each_rod,),
+             "drives": (design.each_drive, design.each_stiff_cable)}[kind]  # fmt: skip
+    values = {name: value for of in parts for name, value in vars(of[row]).items() if value is not None}
+    return {"length": float(design.built.rod_lengths[row]), **values} if kind == "rods" else values
 
 
 def save_design(design: RobotDesign, path: str | Path) -> None:

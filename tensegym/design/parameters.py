@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tensegym.errors import DesignError, FlexureError
+from tensegym.structure.structure import ROD_LENGTHS
 from tensegym.tables import Checked, bounded, choice, noted, one_line
 
 if TYPE_CHECKING:
@@ -22,6 +23,8 @@ class Rod(Checked, error=DesignError):
     tube_inner_radius: float = bounded(0, 0.2, 0.003, "m", "inner radius")
     end_mass_radius: float = bounded(1e-4, 0.2, 0.01, "m", "radius of the solid ball each end mass is taken as")
     foot_radius: float = bounded(1e-4, 0.2, 0.004, "m", "contact sphere at each end")
+    length: float | None = bounded(ROD_LENGTHS.low, ROD_LENGTHS.high, None, "m",
+                                   "given, it overrides the distance between the rod's nodes")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -71,9 +74,10 @@ class HalfRod:
 class ElasticCable(Checked, error=DesignError):
     """The elastic cables: spring-dampers, tension only unless ``two_way``."""
 
-    stiffness: float = bounded(0, 1e6, 300.0, "N/m", "spring rate of every elastic cable", open_low=True)
-    damping: float = bounded(0, 1e4, 5.0, "N s/m", "damper rate of every elastic cable")
-    pretension: float = bounded(0, 1e4, 10.0, "N", "tension at rest of every elastic cable, which sets its length")
+    stiffness: float = bounded(0, 1e6, 300.0, "N/m", "spring rate of every elastic cable; of some, see [cables.NAME]", open_low=True)
+    damping: float = bounded(0, 1e4, 5.0, "N s/m", "damper rate of every elastic cable; of some, see [cables.NAME]")
+    pretension: float = bounded(0, 1e4, 10.0, "N", "tension at rest of every elastic cable, which sets its length; "
+                                "of some, see [cables.NAME]")
     natural_length: float | None = bounded(0, 100, None, "m", "given, it overrides the pretension (the paper's way)",
                                            open_low=True)
     two_way: bool = noted(False, "push as well as pull, as the paper's springs do")

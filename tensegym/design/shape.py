@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tensegym.arrays import FloatArray
 from tensegym.errors import DesignError
+from tensegym.structure.equilibrium import in_words
 from tensegym.structure.form_finding import cross_matrices
 from tensegym.structure.structure import Structure
 
@@ -38,35 +40,37 @@ def thickness(nodes: FloatArray) -> float:
     return float(np.ptp(centred @ np.linalg.svd(centred, full_matrices=False)[2][-1]))
 
 
-def shape_of(given: Structure, standing: Structure, tension: float, stiffness: float, radius: float) -> Shape:
+def shape_of(
+    given: Structure, standing: Structure, tension: FloatArray, stiffness: FloatArray, radius: float
+) -> Shape:
     """The shape that form finding made of ``given``.
 
     Args:
         given, standing: before and after; the same where the nodes balance as given.
-        tension: of every elastic cable at rest [N]; 0 where they are not in balance.
-        stiffness: of every elastic cable [N/m].
+        tension: (c,) of the elastic cables at rest [N]; NaN where they are not in balance.
+        stiffness: (c,) of the elastic cables [N/m].
         radius: cables are tied this far from their nodes, on the line between them [m].
     """
     moved = float(np.linalg.norm(standing.nodes - given.nodes, axis=1).max())
     thin, limit = thickness(standing.nodes), FLAT * float(standing.rod_lengths.max())
     flattened = thin < limit <= thickness(given.nodes)
-    if tension <= 0 or not len(standing.cables):
+    if not (tension > 0).any() or np.isnan(tension).any():
         return Shape(moved, thin, flattened, float("nan"), np.zeros_like(standing.nodes))
     least, mode = least_stiffness(standing, tension, stiffness, radius)
     return Shape(moved, thin, flattened, least, mode)
 
 
-def check_shape(shape: Shape, standing: Structure, tension: float) -> None:
+def check_shape(shape: Shape, standing: Structure, tension: FloatArray) -> None:
     """Raise DesignError for a robot that cannot be what its design says: a plane figure, or a saddle."""
     if shape.flattened:
         raise DesignError(
             f"structure: form finding flattens these nodes to a plane figure, {1e3 * shape.thickness:.2g} mm thick: "
             "equal tension in all cables holds no body near them. Change the cables or the proportions"
         )
-    softest = UNSTABLE * tension / standing.rod_lengths.max()
+    softest = UNSTABLE * tension.max(initial=0.0) / standing.rod_lengths.max()
     if shape.least_stiffness < -softest:
         raise DesignError(
-            f"structure: {tension:g} N in every cable balances these nodes but does not hold them: the stiffness is "
+            f"structure: {in_words(tension)} balances these nodes but does not hold them: the stiffness is "
             f"{shape.least_stiffness:.3g} N/m, below 0, along a motion of nodes {_most_moved(shape.mode)}. "
             "Change the cables or the nodes"
         )
@@ -76,7 +80,9 @@ def _most_moved(mode: FloatArray) -> str:
     return ", ".join(str(node + 1) for node in np.argsort(-np.linalg.norm(mode, axis=1), kind="stable")[:3])
 
 
-def least_stiffness(structure: Structure, tension: float, stiffness: float, radius: float) -> tuple[float, FloatArray]:
+def least_stiffness(
+    structure: Structure, tension: ArrayLike, stiffness: ArrayLike, radius: float
+) -> tuple[float, FloatArray]:
     """Least stiffness of rigid rods between prestressed cables [N/m], and its mode (n, 3); see Shape.
 
     Each rod moves by its middle's displacement and a turn w across its axis or about it. A cable of span l u resists
@@ -85,6 +91,7 @@ def least_stiffness(structure: Structure, tension: float, stiffness: float, radi
     """
     nodes, rods, cables = structure.nodes, structure.rods, structure.cables
     count, half = len(rods), structure.rod_lengths / 2
+    tension, stiffness = (np.broadcast_to(np.asarray(a, dtype=float), len(cables)) for a in (tension, stiffness))
     rod_of = np.empty(len(nodes), dtype=np.int64)
     rod_of[rods] = np.arange(count)[:, None]
     arms = nodes - nodes[rods].mean(axis=1)[rod_of]
@@ -99,7 +106,7 @@ def least_stiffness(structure: Structure, tension: float, stiffness: float, radi
     rows = np.arange(len(cables))
     for side, sign in ((0, -1.0), (1, 1.0)):
         end = cables[:, side]
-        rod, tie, pull = rod_of[end], arms[end] - sign * radius * along, -sign * tension * along
+        rod, tie, pull = rod_of[end], arms[end] - sign * radius * along, -sign * tension[:, None] * along
         change[rows, :, rod, :3] += sign * np.eye(3)
         change[rows, :, rod, 3:] -= sign * cross_matrices(tie) / half[rod, None, None]
         turned = (pull * tie).sum(axis=1)[:, None, None] * np.eye(3)

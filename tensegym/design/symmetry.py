@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import permutations
 
@@ -49,9 +50,21 @@ def symmetries(design: RobotDesign, tolerance: float = 1e-6) -> list[Symmetry]:
         if distances.min(axis=1).max() > tolerance or len(set(perm)) < len(perm):
             continue
         symmetry = _induced(design, perm, turn)
-        if symmetry and np.allclose(masses[symmetry.rods], masses) and (split[symmetry.rods] == split).all():
+        if (symmetry and np.allclose(masses[symmetry.rods], masses) and (split[symmetry.rods] == split).all()
+                and all((kinds[images] == kinds).all() for kinds, images in _kinds(design, symmetry))):  # fmt: skip
             found.append(symmetry)
     return sorted(found, key=lambda s: (not np.array_equal(s.nodes, np.arange(len(nodes))), tuple(s.nodes)))
+
+
+def _kinds(design: RobotDesign, symmetry: Symmetry) -> list[tuple[IntArray, IntArray]]:
+    """Numbers that tell rods, elastic cables and drives by what they are, and where each of them goes."""
+    drives = list(zip(design.each_drive, design.each_stiff_cable, strict=True))
+    members: tuple[tuple[Sequence[object], IntArray], ...] = (
+        (design.each_rod if design.rods else (), symmetry.rods),
+        (design.each_cable, symmetry.cables[: len(design.each_cable)]), (drives, symmetry.drives),
+    )  # fmt: skip
+    return [(np.array([kinds.index(kind) for kind in kinds], dtype=np.int64), images[: len(kinds)])
+            for kinds, images in members]
 
 
 def _independent_triple(nodes: FloatArray) -> tuple[int, int, int]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, is_dataclass, replace
+from dataclasses import dataclass, replace
 from importlib import resources
 from typing import Any
 
@@ -14,6 +14,8 @@ from tensegym.errors import DesignError, TensegymError
 from tensegym.tables import Error, Range, as_text, mapping, one_line, parse_toml, show
 
 from .design import RobotDesign
+from .design_file import every_value
+from .groups import check_own
 
 TRIES = 100  # draws in a row that may all be refused before there is taken to be no sound design in the ranges
 
@@ -32,8 +34,7 @@ class Variation:
         """``design`` with its varied fields at parts (v,), 0 to 1, of their ranges. Raises as RobotDesign does."""
         changes: dict[str, Any] = {}
         for (name, r), part in zip(self.ranges.items(), parts, strict=True):
-            group, field = name.split(".")
-            changes[group] = replace(changes.get(group, getattr(design, group)), **{field: r.value(float(part))})
+            _put(design, changes, name, r.value(float(part)))
         return design.with_(**changes)
 
     def draw(self, design: RobotDesign, rng: np.random.Generator) -> RobotDesign:
@@ -66,8 +67,10 @@ def parse_variation(data: Any, design: RobotDesign) -> Variation:
     for name, r in ranges.items():  # each end by itself: what only a combination breaks is found when it is drawn
         _value(design, name)
         for end in (r.low, r.high):
-            group, field = name.split(".")
-            replace(getattr(design, group), **{field: end})
+            changes: dict[str, Any] = {}
+            _put(design, changes, name, end)
+            if "." not in name:
+                design.with_(**changes)
     return Variation(ranges)
 
 
@@ -83,11 +86,24 @@ def named_ranges(name: Any, where: str, error: Error) -> dict[str, Any]:
     return mapping(shipped[name], where, error)
 
 
+def _put(design: RobotDesign, changes: dict[str, Any], name: str, value: float) -> None:
+    """Write a value of a field, or of a group's, into the changes of a design."""
+    first, *rest = name.split(".")
+    held = changes.get(first, getattr(design, first))
+    if len(rest) == 2:
+        changes[first] = tuple(
+            replace(group, own={**group.own, rest[1]: value}) if group.name == rest[0] else group for group in held
+        )
+        check_own(first, next(group for group in changes[first] if group.name == rest[0]))
+    else:
+        changes[first] = replace(held, **{rest[0]: value}) if rest else value
+
+
 def _value(design: RobotDesign, name: str) -> float:
-    """Of ``group.field``. Raises DesignError where a design has no such number."""
-    group, _, field = str(name).partition(".")
-    held = getattr(design, group, None)
-    value = getattr(held, field, None) if is_dataclass(held) and field else None
+    """Of a field by its path. Raises DesignError where a design has no such number."""
+    value: Any = every_value(design)
+    for key in str(name).split("."):
+        value = value.get(key) if isinstance(value, dict) else None
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise DesignError(one_line(f"vary: {show(name)} is no number of the design {design.name!r}; give group.field "
                           "of one it has, such as elastic_cable.stiffness"))  # fmt: skip

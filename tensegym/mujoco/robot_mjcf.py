@@ -56,10 +56,11 @@ def robot_mjcf(
         tendons.append(f'    <spatial name="{name}"{spring} width="0.002"><site site="{name}_a"/>'
                        f'<site site="{name}_b"/></spatial>')  # fmt: skip
         if driven:
+            pull = design.each_stiff_cable[row - model.first_driven].max_pull
             winches.append(
                 f'    <general name="winch_{name}" tendon="{name}" gaintype="fixed" gainprm="{-stiffness:.17g}" '
                 f'biastype="affine" biasprm="{text([stiffness * rest, -stiffness, -damping])}" forcerange="-1e6 0" '
-                f'ctrlrange="0 {design.stiff_cable.max_pull * rest:.17g}"/>'
+                f'ctrlrange="0 {pull * rest:.17g}"/>'
             )
     parts = []
     for row, body in enumerate(bodies):

@@ -8,7 +8,7 @@ contact, and rotor angle 0 is calibrated there.
 
 from __future__ import annotations
 
-from dataclasses import astuple
+from dataclasses import astuple, fields
 
 import numpy as np
 
@@ -21,10 +21,11 @@ from .vectors import KERNEL
 # Columns of a drive's state
 COMMAND, ROTOR_ANGLE, ROTOR_SPEED, CURRENT, VOLTAGE, SPOOL_ANGLE, LOAD_TORQUE, PULLED = range(8)
 STATE_SIZE = 8
+DRIVE_FIELDS = len(fields(Drive))
 
 
 def drive_constants(drive: Drive) -> FloatArray:
-    """The fields of ``drive`` in their order, for the kernel: (14,), SI units."""
+    """The fields of ``drive`` in their order, for the kernel: (DRIVE_FIELDS,), SI units."""
     return np.array(astuple(drive), dtype=float)
 
 

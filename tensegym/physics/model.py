@@ -46,7 +46,7 @@ class Model(NamedTuple):
     driven_count: int
     """How many stiff cables there are, each with a drive."""
     drive_params: FloatArray
-    """(w, 14) fields of design.Drive in their order, a row a drive, SI units."""
+    """(w, 13) fields of design.Drive in their order, a row a drive, SI units."""
     body_params: FloatArray
     """(b, 4) columns INVERSE_MASS [1/kg], INVERSE_TRANSVERSE, INVERSE_AXIAL [1/(kg m^2)], SPIN_DAMPING [N m s/rad]."""
     other_half: IntArray

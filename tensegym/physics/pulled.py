@@ -7,6 +7,8 @@ import numpy as np
 from tensegym.arrays import FloatArray
 from tensegym.compiled import kernel
 from tensegym.design.design import RobotDesign
+from tensegym.design.groups import column
+from tensegym.design.parameters import Drive
 
 from .geometry import spring_geometry
 from .model import STIFFNESS, TWO_WAY, Model, new_out
@@ -19,9 +21,8 @@ KEPT = 0.85  # of the velocity in a step
 YIELDING = 10.0  # stiff cables are taken no stiffer than so many elastic ones, or as makes this of the drives' pull
 
 
-def stall_tension(design: RobotDesign) -> float:
+def stall_tension(drive: Drive) -> float:
     """Tension that a drive can just wind in [N]."""
-    drive = design.drive
     current = min(drive.current_limit, drive.voltage_limit / drive.resistance) - drive.friction_current
     pull = max(0.0, current) * drive.torque_constant * drive.gear_ratio / drive.spool_radius
     return pull * drive.gear_efficiency
@@ -35,9 +36,11 @@ def pulled_state(design: RobotDesign, model: Model, part: float) -> tuple[FloatA
     bodies whose masses are the stiffness around them, so that steps of one are stable, under damping. Contacts are left
     out. Tensions are within some 20 % of those that a simulation ends at.
     """
-    pull, stall = part * design.stiff_cable.max_pull * design.stiff_cable_lengths, stall_tension(design)
+    pull = part * column(design.each_stiff_cable, "max_pull") * design.stiff_cable_lengths
+    stall = np.array([stall_tension(drive) for drive in design.each_drive])
     stiffness = model.spring_params[:, STIFFNESS].copy()
-    soft = YIELDING * np.minimum(design.elastic_cable.stiffness, stall / np.maximum(pull, 1e-9))
+    stiffest = column(design.each_cable, "stiffness").max(initial=0.0)
+    soft = YIELDING * np.minimum(stiffest, stall / np.maximum(pull, 1e-9))
     stiffness[model.driven] = np.minimum(stiffness[model.driven], soft)
     poses, angles, tensions = model.rest_poses.copy(), np.zeros(len(model.pin_bodies)), np.zeros(len(stiffness))
     _relax(model, first_columns(model), stiffness, pull, stall, new_out(model), poses, angles, tensions)
@@ -46,7 +49,7 @@ def pulled_state(design: RobotDesign, model: Model, part: float) -> tuple[FloatA
 
 @kernel(**ALLOCATING)
 def _relax(model, first, stiffness, pull, stall, out, poses, angles, tensions):
-    """Move poses (b, 7) and angles (p,), and write the tensions (s,); stiffness (s,), pull (w,) [m], stall [N]."""
+    """Move poses (b, 7) and angles (p,), and write the tensions (s,); stiffness (s,), pull (w,) [m], stall (w,) [N]."""
     size, driven = first[-1], model.first_driven
     force, velocity, inertia = np.empty(size), np.zeros(size), np.zeros(size)
     lengths = np.empty(len(tensions))
@@ -63,7 +66,7 @@ def _relax(model, first, stiffness, pull, stall, out, poses, angles, tensions):
             tension = stiffness[c] * (lengths[c] - model.rest_lengths[c] + wound)
             if model.spring_params[c, TWO_WAY] == 0:
                 tension = max(0.0, tension)
-            tensions[c] = min(tension, stall) if 0 <= d < len(pull) else tension
+            tensions[c] = min(tension, stall[d]) if 0 <= d < len(pull) else tension
         generalised_forces(model, first, tensions, out, force)
         for i in range(size):
             if inertia[i] > 0:  # what no spring holds stays

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from tensegym.arrays import FloatArray
 from tensegym.design.design import RobotDesign
 
-from .drives import drive_constants
+from .drives import DRIVE_FIELDS, drive_constants
 from .geometry import spring_geometry
 from .mobility import mobility_matrix
 from .model import (
@@ -68,9 +68,8 @@ def robot_model(design: RobotDesign) -> Model:
     foot_radii[rods] = radii[:, None]
 
     pairs = np.concatenate([structure.cables, structure.stiff_cables])
-    elastic, stiff = design.elastic_cable, design.stiff_cable
-    rows = len(structure.cables) * [(elastic.stiffness, elastic.damping, elastic.two_way)]
-    rows += len(structure.stiff_cables) * [(stiff.stiffness, stiff.damping, False)]
+    rows = [(cable.stiffness, cable.damping, cable.two_way) for cable in design.each_cable]
+    rows += [(cable.stiffness, cable.damping, False) for cable in design.each_stiff_cable]
     # tied on the line between the two nodes, so that the rest position balances as if tied to the axis
     lines = (nodes[pairs[:, 1]] - nodes[pairs[:, 0]]) / structure.lengths(pairs)[:, None]
     offset, turns = design.attachment_radius * lines, Rotation.from_quat(poses[body_of_node, 3:]).as_matrix()
@@ -111,7 +110,7 @@ def robot_model(design: RobotDesign) -> Model:
         rest_lengths=np.concatenate(natural),
         first_driven=len(structure.cables),
         driven_count=len(structure.stiff_cables),
-        drive_params=np.tile(drive_constants(design.drive), (len(structure.stiff_cables), 1)),
+        drive_params=np.array([drive_constants(drive) for drive in design.each_drive]).reshape(-1, DRIVE_FIELDS),
         body_params=body_params,
         other_half=other_half,
         masses=masses,

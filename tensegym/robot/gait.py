@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tensegym.arrays import FloatArray
+from tensegym.design.groups import column
 from tensegym.physics.drives import CURRENT
 from tensegym.structure.faces import supporting_face
 
@@ -63,11 +64,12 @@ class DriveMeter:
     def __init__(self, robot: TensegrityRobot) -> None:
         self.robot = robot
         self._squares = np.zeros(len(robot.drives))
+        self._limits = column(robot.design.each_drive, "current_limit")
         self._updates = 0
 
     def update(self) -> None:
         """Take the present currents in."""
-        self._squares += (self.robot.drives[:, CURRENT] / self.robot.design.drive.current_limit) ** 2
+        self._squares += (self.robot.drives[:, CURRENT] / self._limits) ** 2
         self._updates += 1
 
     @property

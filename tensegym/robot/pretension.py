@@ -1,15 +1,19 @@
-"""The least pretension at which a robot stands, and the stiffness of cables that would take as much."""
+"""The least pretension at which a robot stands, and the stiffness of cables that would take as much.
+
+Where cables pull unlike it is the largest of their pretensions, the others in proportion.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from tensegym.design.design import RobotDesign
+from tensegym.design.groups import column, scaled
 from tensegym.errors import DesignError, StructureError
 
 from .robot import TensegrityRobot
@@ -82,12 +86,14 @@ class _Trials:
     """A robot with one pretension and another, set down on one face and another."""
 
     def __init__(self, design: RobotDesign, engine: str, stack: ExitStack) -> None:
-        self.design, self.engine, self.stack, cable = design, engine, stack, design.elastic_cable
-        self.present = self.highest = cable.pretension
+        self.design, self.engine, self.stack = design, engine, stack
+        self.present = self.highest = float(design.rest_tensions.max())
         self.lowest = LOWEST * self.present
-        shortest = float(design.standing.lengths(design.standing.cables).min()) - 2 * design.attachment_radius
-        self.most = max(NEARLY * cable.stiffness * shortest, self.present)
-        self.limit = f"the most its cables take at {cable.stiffness:.4g} N/m"
+        lengths = design.standing.lengths(design.standing.cables) - 2 * design.attachment_radius
+        stiffness = column(design.each_cable, "stiffness")
+        part = design.rest_tensions / self.present
+        self.most = max(NEARLY * float(((stiffness * lengths)[part > 0] / part[part > 0]).min()), self.present)
+        self.limit = f"the most its cables take at {stiffness.min():.4g} N/m"
         self._robots: dict[float, TensegrityRobot | None] = {}
         self._known: dict[tuple[Settled, float], bool] = {}
 
@@ -109,7 +115,7 @@ class _Trials:
         """Whether it stands on a face at a pretension [N]; not where no robot can be made with it."""
         if (face, pretension) not in self._known:
             if pretension not in self._robots:
-                self._robots[pretension] = robot = self._robot(pretension=pretension)
+                self._robots[pretension] = robot = self._robot(pretension)
                 self.highest = max(self.highest, pretension if robot else 0.0)
             robot = self._robots[pretension]
             self._known[face, pretension] = robot is not None and not settle(robot, face.names).fell
@@ -118,15 +124,20 @@ class _Trials:
     def stiffness(self, faces: Sequence[Settled]) -> float | None:
         """Least stiffness of the cables [N/m], of those tried, with which the highest pretension holds it on faces."""
         for ratio in STIFFER:
-            stiffness = ratio * self.design.elastic_cable.stiffness
-            robot = self._robot(pretension=self.highest, stiffness=stiffness)
+            robot = self._robot(self.highest, ratio)
             if robot and not any(settle(robot, face.names).fell for face in faces):
-                return stiffness
+                return float(ratio * column(self.design.each_cable, "stiffness").max())
         return None
 
-    def _robot(self, **changes: Any) -> TensegrityRobot | None:
+    def _robot(self, pretension: float, stiffer: float = 1.0) -> TensegrityRobot | None:
+        """With this largest pretension [N], others in proportion, and all cables so many times stiffer."""
+        cable, part = self.design.elastic_cable, pretension / self.present
+        own = pretension if cable.pretension == self.present else part * cable.pretension
         try:
-            changed = self.design.with_(elastic_cable=replace(self.design.elastic_cable, **changes))
+            changed = self.design.with_(
+                elastic_cable=replace(cable, pretension=own, stiffness=stiffer * cable.stiffness),
+                cables=scaled(self.design.cables, {"pretension": part, "stiffness": stiffer}),
+            )
             return self.stack.enter_context(robot_for(changed, self.engine))
         except (DesignError, StructureError) as error:
             self.limit = f"over which it cannot be built ({error})"[:150]

@@ -8,6 +8,7 @@ import numpy as np
 
 from tensegym.arrays import FloatArray
 from tensegym.design.design import RobotDesign
+from tensegym.design.groups import column
 from tensegym.engine import Uncopied, World
 from tensegym.physics.drives import ROTOR_ANGLE
 from tensegym.physics.geometry import points_at
@@ -83,12 +84,17 @@ class RobotState(Uncopied):
     def command_limit(self) -> FloatArray:
         """(w,) spool angle [rad] of the deepest allowed pull of each stiff cable."""
         design = self.design
-        return design.stiff_cable.max_pull * design.stiff_cable_lengths / design.drive.spool_radius
+        pull = column(design.each_stiff_cable, "max_pull") * design.stiff_cable_lengths
+        return pull / column(design.each_drive, "spool_radius")
+
+    @cached_property
+    def _gear_ratios(self) -> FloatArray:
+        return column(self.design.each_drive, "gear_ratio")
 
     @property
     def drive_angles(self) -> FloatArray:
         """(w,) how far each drive has turned its spool, play apart [rad], against the commanded angles."""
-        return self.drives[:, ROTOR_ANGLE] / self.design.drive.gear_ratio
+        return self.drives[:, ROTOR_ANGLE] / self._gear_ratios
 
     @property
     def poses_in_world(self) -> FloatArray:

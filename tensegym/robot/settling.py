@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
 from tensegym.design.design import RobotDesign
+from tensegym.design.groups import scaled
 from tensegym.design.symmetry import symmetries
 from tensegym.errors import DesignError, SimulationError
 from tensegym.physics.model import DAMPING, Model
@@ -82,7 +83,9 @@ def _eased(design: RobotDesign, ratio: float) -> RobotDesign:
         return design
     names = ("elastic_cable", "stiff_cable", *(["payload"] if design.payload else []))
     cables = {name: getattr(design, name) for name in names}
-    return design.with_(**{name: replace(cable, damping=cable.damping / ratio) for name, cable in cables.items()})
+    eased = {name: replace(cable, damping=cable.damping / ratio) for name, cable in cables.items()}
+    groups = {name: scaled(getattr(design, name), {"damping": 1 / ratio}) for name in ("cables", "drives")}
+    return design.with_(**eased, **groups)
 
 
 def resting_faces(robot: TensegrityRobot) -> list[int]:

@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from tensegym.design.design import RobotDesign
 
 from .pretension import Holding, least_pretension
@@ -92,6 +94,6 @@ def standing_verdict(design: RobotDesign, engine: str = "pybullet", *, pretensio
     with robot_for(design, engine) as robot:
         faces = [settle(robot, names) for names in alike(robot)]
     faces.sort(key=lambda face: face.volume if face.volume >= 0 else -1.0)
-    cable = design.elastic_cable
-    searched = pretension and cable.natural_length is None and cable.pretension > 0 and design.gravity > 0
+    tensions = design.rest_tensions
+    searched = pretension and not np.isnan(tensions).any() and tensions.max(initial=0.0) > 0 and design.gravity > 0
     return Verdict(design, faces, least_pretension(design, engine, faces) if searched else None)

@@ -8,6 +8,7 @@ import numpy as np
 
 from tensegym.arrays import FloatArray
 from tensegym.design.design import RobotDesign
+from tensegym.design.parameters import ElasticCable, Payload
 from tensegym.errors import DesignError
 from tensegym.physics.drives import drive_step_limit, most_gains
 from tensegym.physics.model import Model
@@ -102,10 +103,13 @@ def _cause(design: RobotDesign, model: Model, state: Held, source: str, pulls: b
         return "the stiffness and damping of its cables", 0.0, ""
     tension = float(state.tensions[rows[source]].max())
     kind = {"elastic": "elastic cables", "stiff": "stiff cables", "payload": "payload's cables"}[source]
-    group = design.payload if source == "payload" else design.elastic_cable
+    group: Payload | ElasticCable | None = design.payload
+    if source != "payload":
+        group = max(design.each_cable, key=lambda cable: cable.pretension, default=None)
     if not pulls and group is not None and group.natural_length is None:
         return f"{type(group).__name__}.pretension = {group.pretension:g} N", group.pretension, "N"
-    pull = f", drives at max_pull = {design.stiff_cable.max_pull:g}" if pulls else ""
+    deepest = max((cable.max_pull for cable in design.each_stiff_cable), default=0.0)
+    pull = f", drives at max_pull = {deepest:g}" if pulls else ""
     return f"a tension of {tension:.3g} N in the {kind}{pull},", tension, "N"
 
 
@@ -140,8 +144,8 @@ def _axis(quaternion: FloatArray) -> FloatArray:
 
 def _check_drive(design: RobotDesign, dt: float) -> None:
     """Raise DesignError for a drive whose controller hunts."""
-    drive, limit = design.drive, drive_step_limit(design.drive)
-    if dt < limit or not len(design.structure.stiff_cables):
+    drive = min(design.each_drive, key=drive_step_limit, default=None)
+    if drive is None or dt < (limit := drive_step_limit(drive)):
         return
     position, velocity = most_gains(drive, dt)
     found = f"position_gain = {drive.position_gain:g} V/rad must be below {position:.3g}"

@@ -24,7 +24,7 @@ from typing import Any
 import tomli_w
 
 from tensegym.control.table import with_defaults
-from tensegym.design.design_file import design_from_dict, design_to_dict
+from tensegym.design.design_file import design_from_dict, every_value
 from tensegym.errors import InputError, TensegymError
 from tensegym.tables import (
     Checked,
@@ -178,7 +178,7 @@ def _start(task: Task, data: dict[str, Any]) -> Tables:
 def _whole(tables: Tables) -> Tables:
     """Start values of every field there is."""
     design = design_from_dict(tables["design"])
-    fields_of = design_to_dict(design)
+    fields_of = every_value(design)
     fields_of["structure"] = {"rod_length": design.length, "stiff_cables": fields_of["structure"]["stiff_cables"]}
     return {"design": fields_of, "controller": with_defaults(tables["controller"])}
 

@@ -120,15 +120,22 @@ def out_of_balance(structure: Structure, tension: ArrayLike) -> FloatArray:
     return (load + matrix[:, count:] @ rods).reshape(-1, 3)
 
 
-def check_balance(structure: Structure, tension: float) -> None:
-    """Raise StructureError, naming the nodes, unless this tension [N] in every elastic cable balances."""
+def in_words(tension: ArrayLike) -> str:
+    """Tensions [N] of all cables, for messages."""
+    low, high = float(np.min(tension, initial=np.inf)), float(np.max(tension, initial=0.0))
+    return f"a tension of {high:g} N in every cable" if low >= high else f"one of {low:g} to {high:g} N in the cables"
+
+
+def check_balance(structure: Structure, tension: ArrayLike) -> None:
+    """Raise StructureError, naming the nodes, unless these tensions [N] of the elastic cables balance: (c,), or one of
+    all."""
     left = np.linalg.norm(out_of_balance(structure, tension), axis=1)
-    bad = np.flatnonzero(left > BALANCE_TOLERANCE * max(tension, 1e-9))
+    bad = np.flatnonzero(left > BALANCE_TOLERANCE * max(float(np.max(tension, initial=0.0)), 1e-9))
     if len(bad):
         named = ", ".join(f"{node + 1} ({left[node]:.3g} N)" for node in bad)
         reason = "these nodes have no self-stress" if feasible_self_stress(structure) is None else (
-            "these nodes need unequal tensions")  # fmt: skip
+            "these nodes need other tensions")  # fmt: skip
         raise StructureError(
-            f"a tension of {tension:g} N in every cable leaves nodes out of balance: {named}; {reason}. "
+            f"{in_words(tension)} leaves nodes out of balance: {named}; {reason}. "
             "Move them, or let form finding do so (form_finding = true)"
         )

@@ -1,4 +1,4 @@
-"""Form finding: where rigid rods come to rest between cables that all pull alike.
+"""Form finding: where rigid rods come to rest between cables of given tensions.
 
 A shape is the rows y of the rods' middles, then their unit axes, then the payload's centre. Nodes and the spans of all
 members are linear in y: spans = G y. So with n the members' unit directions and w their tensions, G^T (w n) are the
@@ -9,35 +9,38 @@ G^T w (1 - n n^T) / l G is their stiffness.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
 from tensegym.errors import StructureError
 
-from .equilibrium import BALANCE_TOLERANCE
+from .equilibrium import BALANCE_TOLERANCE, in_words
 from .structure import Structure
 
 MOST_STEPS = 200
 ROUNDING = 1e-14  # of the cables' tension, left out of balance where a shape is found
 
 
-def form_find(structure: Structure, tension: float, payload_tension: float = 0.0) -> Structure:
-    """Move rigid rods until one tension in every elastic cable balances; stiff cables are slack.
+def form_find(structure: Structure, tension: ArrayLike, payload_tension: float = 0.0) -> Structure:
+    """Move rigid rods until the given tensions in the elastic cables balance; stiff cables are slack.
 
     Solves for the net force and moment on each rod from the given nodes, then lays the result back onto them as well
     as a rigid motion can.
 
     Args:
         structure: where the search begins.
-        tension: in every elastic cable [N], above 0.
+        tension: of the elastic cables [N], above 0: (c,), or one of all.
         payload_tension: in one spring from every rod's middle to a common central body [N], in balance too.
 
     Raises:
         StructureError: no shape in balance was found; it names the nodes furthest out.
     """
-    if tension <= 0:
-        raise StructureError(f"tension = {tension!r} N must be above 0 for form finding")
-    balance = _RodBalance(structure, payload_tension / tension)
+    tensions = np.broadcast_to(np.asarray(tension, dtype=float), len(structure.cables))
+    if (tensions <= 0).any():
+        raise StructureError(f"tension = {float(tensions.min()):g} N must be above 0 for form finding")
+    most = float(tensions.max(initial=0.0)) or 1.0
+    balance = _RodBalance(structure, tensions / most, payload_tension / most)
     if np.abs(balance.residual(balance.start)).max() <= 1e-12:
         return structure
     shape = _solve(balance)
@@ -46,16 +49,17 @@ def form_find(structure: Structure, tension: float, payload_tension: float = 0.0
     if not left.max() <= BALANCE_TOLERANCE or spans.min(initial=np.inf) < 0.05 * structure.rod_lengths.min():
         worst = structure.rods[np.argsort(left[: len(structure.rods)])[::-1][:3]].ravel() + 1
         raise StructureError(
-            f"form finding found no shape that {tension:g} N in every cable balances; furthest out are nodes "
+            f"form finding found no shape that {in_words(tensions)} balances; furthest out are nodes "
             f"{', '.join(map(str, worst))}. Start nearer a tensegrity, or change the cables"
         )
     return structure.with_nodes(_laid_onto(nodes, structure.nodes))
 
 
 class _RodBalance:
-    """Forces and moments that a shape leaves, over the cables' tension; a moment over half a rod."""
+    """Forces and moments that a shape leaves, over the largest tension; a moment over half a rod. tensions (c,),
+    payload: over the largest tension too."""
 
-    def __init__(self, structure: Structure, payload: float) -> None:
+    def __init__(self, structure: Structure, tensions: FloatArray, payload: float) -> None:
         (first, second), rods = structure.rods.T, np.arange(len(structure.rods))
         ends = structure.nodes[structure.rods]
         self.count = count = len(rods)
@@ -66,7 +70,7 @@ class _RodBalance:
         middles, axes = ends.mean(axis=1), (ends[:, 1] - ends[:, 0]) / (2 * self.half)
         self.start = np.concatenate([middles, axes])
         self.spans = self.to_nodes[structure.cables[:, 1]] - self.to_nodes[structure.cables[:, 0]]
-        self.tensions = np.ones((len(self.spans), 1))
+        self.tensions = tensions[:, None]
         if payload:
             inward = np.column_stack([-np.eye(count), np.zeros((count, count)), np.ones(count)])
             self.start = np.vstack([self.start, middles.mean(axis=0)])

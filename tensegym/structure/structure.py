@@ -73,6 +73,19 @@ class Structure:
         """The same members on other node positions (n, 3) [m]."""
         return Structure(np.asarray(nodes, dtype=float), self.rods, self.cables, self.stiff_cables)
 
+    def with_rod_lengths(self, lengths: ArrayLike) -> Structure:
+        """With the nodes of each rod moved along it, its middle where it is, to lengths (r,) [m]; NaN leaves a rod."""
+        wanted = np.asarray(lengths, dtype=float)
+        changed = np.isfinite(wanted)
+        if not changed.any():
+            return self
+        nodes, rods = self.nodes.copy(), self.rods[changed]
+        ends = self.nodes[rods]
+        reach = (ends[:, 1] - ends[:, 0]) * (wanted / self.rod_lengths)[changed, None] / 2
+        middles = ends.mean(axis=1)
+        nodes[rods[:, 0]], nodes[rods[:, 1]] = middles - reach, middles + reach
+        return self.with_nodes(nodes)
+
 
 WHAT_A_ROW_HOLDS = "two node numbers; give a cable through several nodes as several cables"
 

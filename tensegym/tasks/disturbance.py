@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from tensegym.design.design import RobotDesign
+from tensegym.design.groups import scaled as scaled_groups
 from tensegym.errors import DesignError, TensegymError
 from tensegym.robot.sensors import Error, Sensors
 from tensegym.tables import Checked, bounded, one_line
@@ -105,11 +106,15 @@ def _built(design: RobotDesign, factors: dict[str, float]) -> RobotDesign:
 
     cable = {"stiffness": factors["stiffness"], "pretension": factors["pretension"]}
     rod = {"tube_mass": factors["mass"], "end_mass": factors["mass"]}
+    torque = {"current_limit": factors["drive"], "voltage_limit": factors["voltage"]}
     return design.with_(
+        cables=scaled_groups(design.cables, cable),
+        rods=scaled_groups(design.rods, rod),
+        drives=scaled_groups(design.drives, torque),
         elastic_cable=scaled(design.elastic_cable, **cable),
         active_rod=scaled(design.active_rod, **rod),
         passive_rod=scaled(design.passive_rod, **rod),
         payload=scaled(design.payload, **cable, mass=factors["mass"]) if design.payload else None,
-        drive=scaled(design.drive, current_limit=factors["drive"], voltage_limit=factors["voltage"]),
+        drive=scaled(design.drive, **torque),
         friction=design.friction * factors["friction"],
     )

@@ -55,9 +55,8 @@ def draw_gait(record: GaitRecorder, speeds_lps: Sequence[float], out: Path) -> N
     times, centres = np.array(record.times), np.array(record.centres)
     tensions, currents = np.array(record.tensions), np.array(record.currents)
     tips = np.flatnonzero(np.diff(record.faces)) + 1
-    drive = record.robot.drive
-    tension_limit = (drive.current_limit * drive.torque_constant * drive.gear_ratio * drive.gear_efficiency
-                     / drive.spool_radius)  # fmt: skip
+    tension_limit = max(drive.current_limit * drive.torque_constant * drive.gear_ratio * drive.gear_efficiency
+                        / drive.spool_radius for drive in record.robot.each_drive)  # fmt: skip
     figure, axes = new_figure(2, 2, size=(12, 9), layout="tight")
     (path, speeds), (pull, load) = axes
 
@@ -85,7 +84,7 @@ def draw_gait(record: GaitRecorder, speeds_lps: Sequence[float], out: Path) -> N
 
     load.plot(times, currents, lw=0.9)
     for sign in (-1, 1):
-        load.axhline(sign * drive.current_limit, color="k", ls="--", lw=1)
+        load.axhline(sign * max(drive.current_limit for drive in record.robot.each_drive), color="k", ls="--", lw=1)
     load.set(xlabel="time [s]", ylabel="current [A]", title="Drives 1 to 6 (dashed: limit)")
     for axis in axes.flat:
         axis.grid(alpha=0.3)

@@ -42,5 +42,5 @@ def test_a_drive_winds_a_cable_in_below_its_stall_tension_and_not_above():
         state = np.zeros(STATE_SIZE)
         state[COMMAND] = 100.0
         for _ in range(200):
-            drive_step(constants, state, factor * stall_tension(design), 1e-3)
+            drive_step(constants, state, factor * stall_tension(design.drive), 1e-3)
         assert (state[1] > 1e-6) == moves
