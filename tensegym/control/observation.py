@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
-from tensegym.design.groups import column
 from tensegym.physics import drives
 from tensegym.physics.model import DAMPING, STIFFNESS
 from tensegym.robot.energy_check import SPEED_BOUND
@@ -64,22 +63,27 @@ class Observation:
 
 
 def _drive_readings(robot: TensegrityRobot) -> list[FloatArray]:
-    drive, kinds = robot.drives, robot.design.each_drive
+    drive, (speed, current) = robot.drives, _limits(robot)
     angle = robot.drive_angles / robot.command_limit
-    speed = drive[:, drives.ROTOR_SPEED] / column(kinds, "speed_limit")
-    return [2 * angle - 1, speed, drive[:, drives.CURRENT] / column(kinds, "current_limit")]
+    return [2 * angle - 1, drive[:, drives.ROTOR_SPEED] / speed, drive[:, drives.CURRENT] / current]
+
+
+def _limits(robot: TensegrityRobot) -> tuple[float, float]:
+    """Largest speed [rad/s] and current [A] of any drive."""
+    kinds = robot.design.each_drive or (robot.design.drive,)
+    return max(drive.speed_limit for drive in kinds), max(drive.current_limit for drive in kinds)
 
 
 ANGLE_BOUND = 2.0  # a spool overshoots its commanded range by less than half of it
 
 
 def _drive_parts(robot: TensegrityRobot) -> list[Part]:
-    wound, drive = len(robot.drives), robot.design.drive
+    wound, (speed, current) = len(robot.drives), _limits(robot)
     range_of_angles = float(robot.command_limit.mean()) if wound else 2.0
     return [
         Part("drive angle", "drive", wound, 1, ANGLE_BOUND, range_of_angles / 2, "rad"),  # from the middle of its range
-        Part("drive speed", "drive", wound, 1, 1.0, drive.speed_limit, "rad/s"),
-        Part("drive current", "drive", wound, 1, 1.0, drive.current_limit, "A"),
+        Part("drive speed", "drive", wound, 1, 1.0, speed, "rad/s"),
+        Part("drive current", "drive", wound, 1, 1.0, current, "A"),
     ]
 
 

@@ -74,7 +74,8 @@ class HalfRod:
 class ElasticCable(Checked, error=DesignError):
     """The elastic cables: spring-dampers, tension only unless ``two_way``."""
 
-    stiffness: float = bounded(0, 1e6, 300.0, "N/m", "spring rate of every elastic cable; of some, see [cables.NAME]", open_low=True)
+    stiffness: float = bounded(0, 1e6, 300.0, "N/m", "spring rate of every elastic cable; of some, see [cables.NAME]",
+                               open_low=True)
     damping: float = bounded(0, 1e4, 5.0, "N s/m", "damper rate of every elastic cable; of some, see [cables.NAME]")
     pretension: float = bounded(0, 1e4, 10.0, "N", "tension at rest of every elastic cable, which sets its length; "
                                 "of some, see [cables.NAME]")

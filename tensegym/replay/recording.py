@@ -111,8 +111,8 @@ class Recording:
 
     @property
     def limits(self) -> Limits:
-        """Of each drive."""
-        drive = self.design.drive
+        """Of each drive, where they differ of the strongest."""
+        drive = max(self.design.each_drive, key=lambda drive: drive.torque_limit, default=self.design.drive)
         return Limits(drive.current_limit, drive.torque_limit, drive.torque_limit / drive.spool_radius)
 
     @property

@@ -162,7 +162,7 @@ def test_a_space_reaches_groups_lengths_friction_and_pairs_of_wound_cables():
 def test_disturbances_take_groups_along(grouped):
     disturb = Disturbance(stiffness=0.2, pretension=0.1, mass=0.3, drive=0.4)
     robot, factors = disturb.draw(grouped, np.random.default_rng(0))
-    for row in (0, 5):
-        assert robot.each_cable[row].stiffness == pytest.approx(factors["stiffness"] * grouped.each_cable[row].stiffness)
+    for made, meant in zip(robot.each_cable, grouped.each_cable, strict=True):
+        assert made.stiffness == pytest.approx(factors["stiffness"] * meant.stiffness)
     assert robot.each_rod[0].end_mass == pytest.approx(0.3 * factors["mass"])
     assert robot.each_drive[0].current_limit == pytest.approx(3.4 * factors["drive"])
