@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
 from tensegym.flexure.hinge import Box
+from tensegym.flexure.hinge.box import SLACK
 from tensegym.flexure.hinge.ranges import check_not_negative, finite_array, is_number, shown
 from tensegym.flexure.models.joint import Joint
 from tensegym.flexure.models.joint_file import load_joint
@@ -134,7 +135,8 @@ class FlexureJoint:
 
     @property
     def margin(self) -> float:
-        """Distance to the limit of the model: 1 at rest, 0 on the limit, negative outside (spring_kernel.margin)."""
+        """Distance to the limit of the model: 1 in the middle of its box (at rest, where forces run from -F to F), 0 on
+        the limit, negative outside (spring_kernel.margin)."""
         pose, gradient, _ = self._now()
         return float(spring_kernel.margin(self.robot.springs, self.row, pose, gradient))
 
@@ -147,7 +149,7 @@ class FlexureJoint:
     def note(self, margin: float, time: float) -> None:
         """Keep the worst margin; count a step outside the fitted domain; the first one ever warns."""
         past = self.outside
-        if margin >= 0:
+        if margin >= -SLACK:  # a box of pulls alone has rest on its limit
             if margin < past.margin:
                 self.outside = Outside(past.steps, margin, time)
             return
@@ -157,7 +159,7 @@ class FlexureJoint:
             warnings.warn(
                 f"flexure {self.name!r} left its fitted domain at t = {time:.4g} s: theta = {theta:.4g} of "
                 f"+-{np.degrees(limit.max_angle):.4g} deg, force ({force[0]:.4g}, {force[1]:.4g}) of "
-                f"+-{limit.max_force:.4g} N, margin {margin:.3g}; what follows is extrapolated (see .outside)",
+                f"{limit.told()}, margin {margin:.3g}; what follows is extrapolated (see .outside)",
                 UserWarning, stacklevel=3,
             )  # fmt: skip
         worst = margin < past.margin

@@ -87,11 +87,13 @@ def pose_of(springs, f, q, out):
 
 @kernel(**OPTIONS)
 def margin(springs, f, pose, gradient):
-    """Distance to the validity limit: the smallest of 1 - |theta| / limit, 1 - |force| / limit on either base axis, and
-    for a potential its buckling guard over the guard at rest. 1 at rest, 0 on the limit, negative outside."""
+    """Distance to the validity limit: the smallest of 1 - |theta| / limit, 1 - |force - middle| / half range on either
+    base axis, and for a potential its buckling guard over the guard at rest. 1 in the middle, 0 on the limit, negative
+    outside."""
     least = 1 - abs(pose[2]) / springs.box[f, 0]
     if springs.kind[f] != TORSION:  # a pin carries any force
-        least = min(least, 1 - max(abs(gradient[0]), abs(gradient[1])) / springs.box[f, 1])
+        for i in range(2):
+            least = min(least, 1 - abs(gradient[i] - springs.box[f, 1 + i]) / springs.box[f, 3 + i])
     if springs.kind[f] == POTENTIAL:
         rows, scales = springs.coefficients[f], springs.rows[f]
         guard = potential_kernel.pose(rows, scales, pose[2], gradient[0], gradient[1])[4]

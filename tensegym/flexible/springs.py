@@ -36,7 +36,7 @@ class Springs(NamedTuple):
     loss_time: FloatArray
     """(f,) B = loss time x K(q) [s]."""
     box: FloatArray
-    """(f, 2) largest rotation [rad] and force on a base axis [N]."""
+    """(f, 5) largest rotation [rad], and middle x, y and half range x, y of the forces on the base axes [N]."""
 
 
 def spring_row(spring: Spring | StiffnessDiagram) -> tuple[int, list[float]]:
@@ -66,5 +66,5 @@ def spring_table(springs: Sequence[Spring], columns: Sequence[Sequence[int]], ac
         np.array([row for _, row in rows], dtype=float).reshape(count, 5),
         np.array(across, dtype=float).reshape(count, 3),
         np.array(loss_times, dtype=float),
-        np.array([[b.max_angle, b.max_force] for b in boxes], dtype=float).reshape(count, 2),
+        np.array([[b.max_angle, *b.centre, *b.half] for b in boxes], dtype=float).reshape(count, 5),
     )

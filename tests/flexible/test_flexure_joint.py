@@ -368,3 +368,18 @@ def test_a_file_beside_the_urdf_declares_the_flexures(tmp_path):
             load_robot(path, fixed_base=True)
     with pytest.raises(FileNotFoundError):
         load_robot(tmp_path / "none.toml")
+
+
+def test_rest_is_on_the_limit_of_a_joint_that_is_only_pulled():
+    spring = PlanarSpring(0.04, 0.4, 1e5, 1e5, 0.1)
+    pulled = Box(0.5, 2.0, force_x=(0.0, 40.0))
+    robot, flexure = stand(spring, box=pulled)
+    with robot, warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert flexure.margin == pytest.approx(0.0, abs=1e-12)
+        robot.step()  # gravity is off: nothing pulls, and rounding is no load outside
+        assert flexure.outside.steps == 0
+    table = spring_table([spring], [[0, 1, 2, -1, -1, -1]], [(0, 0, 0)], [0.0], [pulled])
+    for force, margin in (((20, 0), 1.0), ((40, 1), 0.0), ((10, 0), 0.5), ((20, 1), 0.5), ((-20, 0), -1.0)):
+        found = spring_kernel.margin(table, 0, np.zeros(6), np.array([*force, 0.0, 0, 0, 0], dtype=float))
+        assert found == pytest.approx(margin)

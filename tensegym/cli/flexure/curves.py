@@ -41,10 +41,9 @@ class Curves:
         if not self.out.parent.is_dir():
             raise FileNotFoundError(f"no folder {self.out.parent} to make {self.out.name} in")
         require_matplotlib()
-        angle, force = self.box.max_angle, self.box.max_force_N
         hinges = {name: self.options.apply(name) for name in self.hinges}
         measured = self._measured(hinges)
-        joints = {name: fit_joint(h, max_angle=angle, max_force=force) for name, h in hinges.items()}
+        joints = {name: fit_joint(h, **self.box.ranges()) for name, h in hinges.items()}
         tests = {name: held_out_states(joint.hinge, joint.box) for name, joint in joints.items() if joint.hinge}
         self.out.mkdir(exist_ok=True)
         figures.draw_hinges([joint.hinge for joint in joints.values() if joint.hinge], self.out / "hinges.png")
@@ -78,7 +77,7 @@ def write_curves(joints: dict[str, Joint], path: Path) -> int:
     for name, joint in joints.items():
         assert joint.hinge is not None
         sweep = arm_sweep(joint.hinge, joint.box.max_angle)
-        sweep = sweep.pick(np.abs(sweep.force).max(axis=1) <= joint.box.max_force)
+        sweep = sweep.pick(joint.box.holds(sweep.force))
         answers = {key: model.poses(sweep.theta, sweep.force) for key, model in joint.models.items()}
         for key, states in {"fem": sweep, **answers}.items():
             for i in range(len(states)):

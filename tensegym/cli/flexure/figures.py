@@ -95,7 +95,7 @@ def draw_torque(joints: dict[str, Joint], path: Path, measured: dict[str, States
     for (left, right), (name, joint) in zip(axes, joints.items(), strict=True):
         assert joint.hinge is not None
         sweep = arm_sweep(joint.hinge, joint.box.max_angle)
-        sweep = sweep.pick(np.abs(sweep.force).max(axis=1) <= joint.box.max_force)
+        sweep = sweep.pick(joint.box.holds(sweep.force))
         angle = np.degrees(sweep.theta)
         left.plot(angle, 1e3 * sweep.moment, color="black", lw=2.5, alpha=0.35, label="FEM")
         for key, model in joint.models.items():

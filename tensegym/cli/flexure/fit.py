@@ -62,8 +62,8 @@ class Fit:
         refuse_unused(["model"] * (self.model is not None), "without --data: every model is fitted to a hinge's FEM")
         hinge = self.options.apply(self.hinge)
         began = time.perf_counter()
-        joint = fit_joint(hinge, max_angle=self.box.max_angle, max_force=self.box.max_force_N, count=self.states,
-                          held_out=self.held_out, seed=self.seed, elements=self.elements)  # fmt: skip
+        joint = fit_joint(hinge, **self.box.ranges(), count=self.states, held_out=self.held_out, seed=self.seed,
+                          elements=self.elements)  # fmt: skip
         seconds = time.perf_counter() - began
         save_joint(joint, self.out)
         text = f"{describe(joint)}\nfitted in {seconds:.2f} s; written to {self.out}"
@@ -99,8 +99,9 @@ ERROR_HEADER = ["model", "tip RMS um", "tip max um", "torque RMS %", "torque max
 
 def describe(joint: Joint) -> str:
     """The joint as text: source, box, certificate, errors, notes."""
-    angle, force = math.degrees(joint.box.max_angle), joint.box.max_force
-    lines = [joint.source, f"valid for |theta| <= {angle:.4g} deg, |Fx| and |Fy| at the tip <= {force:.4g} N"]
+    box = joint.box
+    force = f"|Fx| and |Fy| at the tip <= {box.max_force:.4g} N" if box.symmetric else f"at the tip {box.told()}"
+    lines = [joint.source, f"valid for |theta| <= {math.degrees(box.max_angle):.4g} deg, {force}"]
     if "potential" in joint.models:
         proof = joint.certificate()
         lines.append(f"potential certified there: of their values at rest, K >= {proof.transverse:.3g}, C >= "

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
-from typing import Annotated
+from typing import Annotated, Any
 
 from tensegym.cli.options import Within
 from tensegym.errors import InputError
 from tensegym.flexure.hinge import PRESETS, Hinge, as_hinge, preset
 from tensegym.flexure.hinge.presets import MM
 
+Force = Annotated[float, Within(-1e6, 1e6, "N")]
 _LENGTHS = ("length", "height", "width", "thickness", "end_thickness", "radius", "depth", "rib", "arm")
 
 
@@ -77,10 +78,19 @@ class BoxOptions:
     """Largest rotation; default: the hinge's own (30)."""
     max_force_N: Annotated[float, Within(0.0, 1e6, "N")] | None = None
     """Largest force at the tip on each base axis; default: the pure moment at the largest rotation over L."""
+    force_x_N: tuple[Force, Force] | None = None
+    """Least and largest force along x instead, as 0 40 for a pivot that is only pulled."""
+    force_y_N: tuple[Force, Force] | None = None
+    """Least and largest force along y instead."""
 
     def given(self) -> list[str]:
         """Names of the options that were given."""
         return [field.name for field in fields(self) if getattr(self, field.name) is not None]
+
+    def ranges(self) -> dict[str, Any]:
+        """The arguments that ``fit_joint`` takes of them."""
+        return {"max_angle": self.max_angle, "max_force": self.max_force_N, "force_x": self.force_x_N,
+                "force_y": self.force_y_N}  # fmt: skip
 
     @property
     def max_angle(self) -> float | None:

@@ -87,8 +87,7 @@ class Solve:
         hinge: Hinge = self.options.apply(self.hinge)
         if self.model == "fem":
             return solve_fem(hinge, loads, self.elements), _meshed(hinge, hinge.describe(), loads, self.elements)
-        joint = fit_joint(hinge, max_angle=self.box.max_angle, max_force=self.box.max_force_N, held_out=0,
-                          elements=self.elements)  # fmt: skip
+        joint = fit_joint(hinge, **self.box.ranges(), held_out=0, elements=self.elements)
         return solve_model(joint.model(self.model), joint.box, loads), _told(joint)
 
 

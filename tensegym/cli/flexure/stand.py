@@ -26,7 +26,7 @@ from tensegym.flexure.models.joint_fit import fit_joint
 from tensegym.plotting import require_matplotlib, save_pixels
 from tensegym.report import Report, table
 
-from .hinge_options import BoxOptions, HingeOptions
+from .hinge_options import BoxOptions, HingeOptions, refuse_unused
 from .stand_figures import draw_figure_5, draw_vibration
 from .track import sight_file
 
@@ -63,6 +63,8 @@ class Stand:
         if not self.out.parent.is_dir():
             raise FileNotFoundError(f"no folder {self.out.parent} to make {self.out.name} in")
         require_matplotlib()
+        refuse_unused([name for name in self.box.given() if name in ("force_x_N", "force_y_N")],
+                      "on the stand, which pulls both ways")  # fmt: skip
         hinge = self.options.apply(self.hinge)
         if abs(hinge.arm - ARM) > 1e-9:
             raise InputError(f"arm = {1e3 * hinge.arm:g} mm: the arm of the stand in PyBullet is {1e3 * ARM:g} mm")

@@ -63,8 +63,7 @@ class Table:
         for name in self.hinges:
             hinge = self.options.apply(name)
             notes += load_notes(hinge, name, self.table_angle_deg, self.box.max_angle_deg)
-            joint = fit_joint(hinge, max_angle=self.box.max_angle, max_force=self.box.max_force_N, count=self.states,
-                              held_out=self.held_out, seed=self.seed)  # fmt: skip
+            joint = fit_joint(hinge, **self.box.ranges(), count=self.states, held_out=self.held_out, seed=self.seed)
             texts.append(joint.source)
             rows, facts = table_1(joint, name, np.radians(self.table_angle_deg))
             first += rows
@@ -79,7 +78,7 @@ class Table:
             data["hinges"][name] = {"source": joint.source, "table_1": facts, "errors": errors, "loop_work": work,
                                     "table_2_s": {"fem": times.fem, "potential": times.potential, "paper": paper},
                                     "arm_m": hinge.arm, "max_angle_rad": joint.box.max_angle,
-                                    "max_force_N": joint.box.max_force}  # fmt: skip
+                                    "max_force_N": joint.box.max_force, "force_ends_N": joint.box.ends}  # fmt: skip
         texts += [
             f"\nTable 1: where the springs stand; force in base y at the arm's end, +-{self.table_angle_deg:g} deg",
             table(["hinge", "whose", "lambda", "a", "b", "dx mm", "dy mm"], first),

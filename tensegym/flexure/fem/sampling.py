@@ -7,6 +7,7 @@ import numpy as np
 from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
 from tensegym.flexure.hinge import Box, Hinge, States
+from tensegym.flexure.hinge.box import Ends
 from tensegym.flexure.hinge.ranges import check_count, check_max_angle
 
 from .equilibrium import rotate
@@ -25,17 +26,22 @@ def moment_at(hinge: Hinge, angle: float, elements: int = ELEMENTS) -> float:
     return float(solution.moment[0])
 
 
-def default_box(hinge: Hinge, max_angle: float | None = None, max_force: float | None = None) -> Box:
+def default_box(
+    hinge: Hinge, max_angle: float | None = None, max_force: float | None = None, force_x: Ends | None = None,
+    force_y: Ends | None = None,
+) -> Box:  # fmt: skip
     """The hinge's own range of rotation, and forces up to M / L with M the pure moment at the largest rotation.
 
     Args:
         hinge: whose box.
         max_angle: in place of the hinge's own [rad].
         max_force: in place of M / L [N].
+        force_x, force_y: least and largest force on an axis, in place of +-max_force [N].
     """
     angle = hinge.max_angle if max_angle is None else max_angle
     check_max_angle(angle)
-    return Box(angle, moment_at(hinge, angle) / hinge.length if max_force is None else max_force)
+    largest = moment_at(hinge, angle) / hinge.length if max_force is None else max_force
+    return Box(angle, largest, force_x, force_y)
 
 
 def fit_states(hinge: Hinge, box: Box, count: int = 600, seed: int = 0, elements: int = ELEMENTS) -> States:
@@ -78,7 +84,7 @@ def states_at(hinge: Hinge, box: Box, unit: FloatArray, elements: int = ELEMENTS
     Raises:
         FlexureError: when one cannot be reached or is unstable under its dead load: the box goes past buckling.
     """
-    force = box.max_force * unit[:, 1:]
+    force = box.centre + box.half * unit[:, 1:]
     solution = rotate(hinge, box.max_angle * unit[:, 0], force=force, elements=elements, from_rest=True)
     bad = np.flatnonzero((solution.status != CONVERGED) | ~solution.stable)
     if len(bad):
@@ -86,7 +92,7 @@ def states_at(hinge: Hinge, box: Box, unit: FloatArray, elements: int = ELEMENTS
         why = solution.reason(i) or "is unstable under that dead load: past buckling"
         raise FlexureError(
             f"{hinge.name}: at theta = {np.degrees(box.max_angle * unit[i, 0]):.3g} deg with the force "
-            f"({force[i, 0]:.4g}, {force[i, 1]:.4g}) N the hinge {why}; lower max_force = {box.max_force:.4g} N or "
-            "max_angle"
+            f"({force[i, 0]:.4g}, {force[i, 1]:.4g}) N the hinge {why}; lower "
+            f"{f'max_force = {box.max_force:.4g} N' if box.symmetric else 'the forces'} or max_angle"
         )
     return solution.states()

@@ -72,8 +72,7 @@ def certify(potential: Potential) -> Certificate:
     rows = potential.coefficients
     stretch = potential.box.max_angle / potential.angle_scale
     rows = rows * stretch ** np.arange(rows.shape[1])  # powers of theta / max_angle
-    half = potential.box.max_angle / 2
-    axial = potential.box.max_force * (np.cos(half) + np.sin(half)) * potential.length / potential.moment_scale
+    axial = [force * potential.length / potential.moment_scale for force in potential.box.axial]
     k = poly.polymul(rows[SK], rows[SK])
     soft = poly.polyadd(poly.polymul(rows[SA], rows[SA]),
                         poly.polymul([0, 0, stretch**2], poly.polymul(rows[SB], rows[SB])))  # fmt: skip
@@ -81,13 +80,13 @@ def certify(potential: Potential) -> Certificate:
         "su": lower_bound(rows[SU] / rows[SU, 0]),
         "K": lower_bound(k / k[0]),
         "C": lower_bound(soft / soft[0]) if soft[0] > 0 else 0.0,
-        "K - 2 g n": min(lower_bound(poly.polysub(k, 2 * sign * axial * rows[G]) / k[0]) for sign in (-1, 1)),
+        "K - 2 g n": min(lower_bound(poly.polysub(k, 2 * force * rows[G]) / k[0]) for force in axial),
     }
     for name, bound in bounds.items():
         if not bound > 0:
             raise FlexureError(
                 f"{name} is not positive on all of +-{np.degrees(potential.box.max_angle):.4g} deg, "
-                f"+-{potential.box.max_force:.4g} N (bound {bound:.3g} of its value at rest): "
+                f"{potential.box.told()} (bound {bound:.3g} of its value at rest): "
                 "fit a smaller box or give more states"
             )
     return Certificate(bounds["K"], bounds["C"], bounds["su"], bounds["K - 2 g n"])

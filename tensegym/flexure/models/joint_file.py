@@ -27,6 +27,7 @@ from .torsion_spring import TorsionSpring
 
 FORMAT = "tensegym flexible joint, version 1"
 HIGHEST_DEGREE = 30
+_ENDS = ("force_x", "force_y")
 
 
 def save_joint(joint: Joint, path: str | Path) -> None:
@@ -44,13 +45,14 @@ def joint_to_dict(joint: Joint) -> dict[str, Any]:
         "format": FORMAT,
         "source": joint.source,
         "length_m": joint.length,
-        "box": {"max_angle_rad": joint.box.max_angle, "max_force_N": joint.box.max_force},
+        "box": {"max_angle_rad": joint.box.max_angle, "max_force_N": joint.box.max_force,
+                **{f"{name}_N": list(ends) for name in _ENDS if (ends := getattr(joint.box, name))}},
         "models": {name: _model_to_dict(model) for name, model in joint.models.items()},
         "errors_of": joint.errors_of,
         "errors": {name: _error_to_dict(error) for name, error in joint.errors.items()},
         "notes": list(joint.notes),
         "hinge": hinge_to_dict(joint.hinge) if joint.hinge else None,
-    }
+    }  # fmt: skip
 
 
 def load_joint(path: str | Path) -> Joint:
@@ -73,7 +75,9 @@ def load_joint(path: str | Path) -> Joint:
 def joint_from_dict(data: dict[str, Any]) -> Joint:
     """The inverse of joint_to_dict. Raises FlexureError that names the field."""
     length, of_box = _number(data, "length_m"), _table(data, "box")
-    box = Box(_number(of_box, "max_angle_rad"), _number(of_box, "max_force_N"))
+    ends: dict[str, Any] = {name: as_numbers(of_box[f"{name}_N"], 2, f"{name}_N", FlexureError) for name in _ENDS
+            if f"{name}_N" in of_box}  # fmt: skip
+    box = Box(_number(of_box, "max_angle_rad"), _number(of_box, "max_force_N"), **ends)
     named = _table(data, "models")
     models = {name: _model_from_dict(name, _table(named, name), length, box) for name in named}
     of_models = _table(data, "errors")

@@ -10,6 +10,7 @@ from tensegym.flexure.fem.arm_sweep import arm_sweep
 from tensegym.flexure.fem.mesh_error import too_coarse
 from tensegym.flexure.fem.sampling import HELD_OUT_SEED, default_box, fit_states, held_out_states, moment_at
 from tensegym.flexure.hinge import Hinge, States, symmetry_of
+from tensegym.flexure.hinge.box import Ends
 
 from .certificate import certify
 from .joint import Joint, Model
@@ -27,8 +28,8 @@ _OF_THE_SWEEP: dict[str, tuple[Callable[[States, float], Model], str]] = {
 
 
 def fit_joint(
-    hinge: Hinge, *, max_angle: float | None = None, max_force: float | None = None, count: int = 600,
-    held_out: int = 300, seed: int = 0, elements: int = ELEMENTS,
+    hinge: Hinge, *, max_angle: float | None = None, max_force: float | None = None, force_x: Ends | None = None,
+    force_y: Ends | None = None, count: int = 600, held_out: int = 300, seed: int = 0, elements: int = ELEMENTS,
 ) -> Joint:  # fmt: skip
     """Fit every model to a hinge's FEM states, certify the potential, and measure all on states held out.
 
@@ -36,6 +37,7 @@ def fit_joint(
         hinge: what is fitted.
         max_angle: half range of rotation [rad]; the hinge's own by default.
         max_force: half range of the force at the tip on either base axis [N]; see ``default_box``.
+        force_x, force_y: least and largest force on an axis in place of +-max_force [N].
         count: FEM states that are fitted.
         held_out: random wrenches that the models are judged on; 0 for none.
         seed: of the fitted states.
@@ -51,7 +53,7 @@ def fit_joint(
     """
     if isinstance(seed, int) and seed == HELD_OUT_SEED:
         raise FlexureError(f"seed = {seed} draws the states held out; take another")
-    box = default_box(hinge, max_angle, max_force)
+    box = default_box(hinge, max_angle, max_force, force_x, force_y)
     states = fit_states(hinge, box, count, seed, elements)
     fit = fit_potential(states, hinge.length, box=box, symmetry=symmetry_of(hinge))
     certify(fit.potential)

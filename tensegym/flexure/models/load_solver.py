@@ -58,8 +58,8 @@ def solve_model(model: Model, box: Box, loads: FloatArray) -> list[Answer]:
 def _solve_one(model: Model, box: Box, load: FloatArray) -> Answer:
     nothing = (np.nan, np.nan, np.nan, np.nan)
     force, asked = load[:2], float(load[2])
-    if np.abs(force).max() > box.max_force * (1 + 1e-9):
-        return Answer(*nothing, f"the force {np.abs(force).max():.4g} N is outside the fitted +-{box.max_force:.4g} N")
+    if not box.holds(force[None])[0]:
+        return Answer(*nothing, f"the force ({force[0]:.4g}, {force[1]:.4g}) N is outside the fitted {box.told()}")
     angles = np.linspace(-box.max_angle, box.max_angle, GRID)
     try:
         gap = model.poses(angles, np.broadcast_to(force, (GRID, 2))).moment - asked

@@ -55,7 +55,7 @@ def choose_model(hinge: Hinge, accepted: float, *, loads: str = "arm", joint: Jo
         raise FlexureError(f"loads = {loads!r}; arm or box")
     joint = joint or fit_joint(hinge, held_out=0)
     sweep = arm_sweep(hinge, joint.box.max_angle)
-    inside = sweep.pick(np.abs(sweep.force).max(axis=1) <= joint.box.max_force)
+    inside = sweep.pick(joint.box.holds(sweep.force))
     errors: dict[str, float] = {}
     chosen = "fem"
     for name in ORDER:

@@ -41,7 +41,7 @@ def random_loops(box: Box, count: int, seed: int) -> FloatArray:
     waves = np.concatenate([np.cos(np.outer(order, phase)), np.sin(np.outer(order, phase))])
     loops = rng.normal(size=(count, 3, 2 * HARMONICS)) @ waves + rng.normal(size=(count, 3, 1))
     loops *= rng.uniform(0.5, 1, (count, 3, 1)) / np.abs(loops).max(axis=2, keepdims=True)
-    return np.asarray(loops.transpose(0, 2, 1) * [box.max_angle, box.max_force, box.max_force])
+    return np.asarray(loops.transpose(0, 2, 1) * [box.max_angle, *box.half] + [0.0, *box.centre])
 
 
 def loop_work(model: WrenchModel, potential: Potential, count: int = 100, seed: int = 7) -> LoopWork:

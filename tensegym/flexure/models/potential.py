@@ -104,9 +104,12 @@ class Potential:
         if (np.abs(angle) > slack * self.box.max_angle).any():
             raise FlexureError(f"theta = {np.degrees(np.abs(angle).max()):.4g} deg is outside the fitted "
                                f"+-{np.degrees(self.box.max_angle):.4g} deg; fit a larger box")  # fmt: skip
-        if (np.abs(force) > slack * self.box.max_force).any():
-            raise FlexureError(f"a force of {np.abs(force).max():.4g} N is outside the fitted "
-                               f"+-{self.box.max_force:.4g} N on each axis; fit a larger box")  # fmt: skip
+        outside = ~self.box.holds(force)
+        if outside.any():
+            x, y = force[int(np.flatnonzero(outside)[0])]
+            raise FlexureError(
+                f"the force ({x:.4g}, {y:.4g}) N is outside the fitted {self.box.told()}; fit a larger box"
+            )
         if not (guard > 0).all():
             raise FlexureError("K - 2 g n <= 0: the joint buckles under this load")
 

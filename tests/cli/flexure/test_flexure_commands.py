@@ -158,6 +158,9 @@ def test_curves(cli, tmp_path):
     (("--crossing", 0.3), ("has no 'crossing'",)),
     (("--elements", 0), ("elements = 0",)),
     (("--seed", 12345), ("seed = 12345",)),
+    (("--force-x-N", 40, 0), ("force_x = (40.0, 0.0) N: the ends are swapped",)),
+    (("--force-y-N", 0, 1e7), ("force_y_N = 10000000.0", "[-1e+06, 1e+06] N")),
+    (("--force-x-N", -9, 0), ("past buckling", "lower the forces or max_angle")),
 ])  # fmt: skip
 def test_fit_refuses(cli, tmp_path, options, words):
     out = tmp_path / "joint.json"
@@ -236,6 +239,7 @@ def test_spoilt_joint_files_are_refused(joint_file, tmp_path, spoil, words):
     (("table", "--arm-mm", 0), ("x-hinge with arm_mm = 0", "pure moment", "Table 1")),
     (("table", "--table-angle-deg", 120), ("table_angle_deg = 120", "89")),
     (("stand", "leaf-spring", "--arm-mm", 100, "--out", "OUT"), ("arm = 100 mm", "120 mm")),
+    (("stand", "leaf-spring", "--force-y-N", 0, 2, "--out", "OUT"), ("--force-y-N has no effect on the stand",)),
     (("fit", "tfch", "--model", "planar", "--out", "OUT"), ("--model has no effect without --data",)),
     (("fit", "--data", "none.csv", "--thickness-mm", 1, "--out", "OUT"), ("--thickness-mm has no effect with --data",)),
     (("fit", "tfch", "--data", "none.csv", "--max-force-N", 1, "--out", "OUT"), ("--max-force-N has no effect",)),
@@ -314,3 +318,22 @@ def test_profiles_from_the_command_line(cli, tmp_path):
         cli("flexure", "fit", "notch-hinge", "--out", out, "--radius-mm", 6), "above half of the web's length"
     )
     assert_refused(cli("flexure", "fit", "tapered-leaf", "--out", out, "--end-thickness-mm", 0), "end_thickness = 0 m")
+
+
+def test_a_pivot_that_is_only_pulled(cli, tmp_path):
+    """Its pulls, pushed, would buckle it: a box of +-20 N is refused, one of 0 to 20 N fitted and kept."""
+    out, loads, poses = (tmp_path / name for name in ("joint.json", "loads.csv", "poses.csv"))
+    words = ("flexure", "fit", "leaf-spring", "--out", out, "--held-out", 60)
+    assert_refused(cli(*words, "--max-force-N", 20), "past buckling")
+    status, text, _ = cli(*words, "--force-x-N", 0, 20)
+    assert status == 0 and "at the tip Fx in [0, 20] N and Fy in [-1.648, 1.648] N" in text
+    joint = load_joint(out)
+    assert joint.box.force_x == (0, 20)
+    assert joint.errors["potential"].tip_rms < 5e-6 and joint.errors["potential"].moment_rms < 1e-3
+    loads.write_text("Fx_N,Fy_N,Mz_Nmm\n20,1,0\n-1,0,0\n")
+    status, text, _ = cli("flexure", "solve", "--joint", out, "--model", "potential", "--loads", loads, "--out", poses)
+    assert [row["status"] == "ok" for row in read(poses)] == [True, False]
+    assert "row 2: the force (-1, 0) N is outside the fitted Fx in [0, 20] N" in text
+    fem = tmp_path / "fem.csv"
+    cli("flexure", "solve", "--joint", out, "--loads", loads, "--out", fem)
+    assert float(read(poses)[0]["y_mm"]) == pytest.approx(float(read(fem)[0]["y_mm"]), abs=0.02)
