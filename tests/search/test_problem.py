@@ -73,7 +73,7 @@ def test_a_space_is_needed():
 
 
 @pytest.mark.parametrize(
-    "name", ["carry", "carry_conditioned", "climb", "climb_untaught", "course", "cross", "roll", "step"]
+    "name", ["carry", "carry_conditioned", "climb", "climb_untaught", "course", "cross", "roll", "sprint", "step"]
 )
 def test_shipped_task_files_are_sound(name):
     problem = load_problem(name)
