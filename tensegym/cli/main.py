@@ -22,6 +22,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "step": ("tensegym.cli.step:Step", "tip from one face onto the next; --all-faces: which pull tips which face"),
     "simulate": ("tensegym.cli.simulate:Simulate", "drive-angle commands in, the whole motion out, as CSV"),
     "modes": ("tensegym.cli.modes:Modes", "free modes of a design, and the loads of its rods"),
+    "build": ("tensegym.cli.build:Build", "a prism, tower, truncated solid or another structure as a design file"),
     "export": ("tensegym.cli.export:Export", "a design as MJCF, with tendons and winches, or as URDF"),
     "compare": ("tensegym.cli.compare:Compare", "PyBullet and MuJoCo side by side: flight, rest, steps, a policy"),
     "validate": ("tensegym.cli.validate:Validate", "physics against closed forms: expected, measured, tolerance"),

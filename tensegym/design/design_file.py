@@ -2,7 +2,7 @@
 
     preset = "six_rod"            # start from this design; every other line changes it
     [structure]                   # optional: rod_length and spacing [m] of the six rods, or nodes, rods, cables,
-    rod_length = 0.8              # stiff_cables of any class-1 structure
+    rod_length = 0.8              # stiff_cables of any class-1 structure, or builder = "prism" (built.py)
     [elastic_cable]
     stiffness = 400.0             # SI units; `tensegym fields design` lists all fields
     [payload]                     # a section makes one; leave it out for none
@@ -40,6 +40,7 @@ from tensegym.tables import (
     show,
 )
 
+from .built import written_out
 from .design import PRESETS, RobotDesign
 from .groups import KINDS, MEMBERS, table_of
 
@@ -78,6 +79,7 @@ def design_from_dict(data: dict[str, Any]) -> RobotDesign:
     if preset not in PRESETS:
         raise DesignError(one_line(f"unknown preset {show(preset)}; one of {', '.join(PRESETS)}"))
     base, changes = PRESETS[preset](), dict[str, Any]()
+    data = written_out(data, base.elastic_cable)
     if "structure" in data:
         changes["structure"] = _structure(data.pop("structure"), base.structure)
     return replace(base, **changes, **read_fields(RobotDesign, data, "", DesignError, base))

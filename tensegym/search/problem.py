@@ -26,6 +26,7 @@ import tomli_w
 from tensegym.control.table import with_defaults
 from tensegym.design.design_file import design_from_dict, every_value
 from tensegym.errors import InputError, TensegymError
+from tensegym.structures import parameters
 from tensegym.tables import (
     Checked,
     bounded,
@@ -179,7 +180,9 @@ def _whole(tables: Tables) -> Tables:
     """Start values of every field there is."""
     design = design_from_dict(tables["design"])
     fields_of = every_value(design)
-    fields_of["structure"] = {"rod_length": design.length, "stiff_cables": fields_of["structure"]["stiff_cables"]}
+    given = tables["design"].get("structure", {})
+    size = parameters(given) if "builder" in given else {"rod_length": design.length}
+    fields_of["structure"] = {**size, "stiff_cables": fields_of["structure"]["stiff_cables"]}
     return {"design": fields_of, "controller": with_defaults(tables["controller"])}
 
 

@@ -5,7 +5,7 @@ name, for `tensegym build` and for the [structure] table of a design file.
 """
 
 from .blueprint import Blueprint
-from .builders import BUILDERS, blueprint
+from .builders import BUILDERS, blueprint, parameters
 from .octahedron import Octahedron
 from .prism import Prism, ThreeRodRobot
 from .spine import Spine
@@ -14,5 +14,5 @@ from .truncated import Truncated
 
 __all__ = [
     "BUILDERS", "Blueprint", "Octahedron", "Prism", "Spine", "Stack", "ThreeRodRobot", "Tower", "Truncated",
-    "blueprint",
+    "blueprint", "parameters",
 ]  # fmt: skip

@@ -33,8 +33,17 @@ def blueprint(table: dict[str, Any], where: str = "structure") -> Blueprint:
 
     Raises StructureError for an unknown builder, and for parameters that it does not have or that leave their range.
     """
+    return _builder(table, where).build()
+
+
+def parameters(table: dict[str, Any], where: str = "structure") -> dict[str, Any]:
+    """The table with every default of its builder. Raises as `blueprint`."""
+    return {"builder": table["builder"], **vars(_builder(table, where))}
+
+
+def _builder(table: dict[str, Any], where: str) -> Builder:
     rest = dict(mapping(table, where, StructureError))
     name = as_text(rest.pop("builder", None), f"{where}.builder", StructureError)
     if name not in BUILDERS:
         raise StructureError(one_line(f"{where}.builder = {show(name)} is not one of {', '.join(BUILDERS)}"))
-    return fill(BUILDERS[name], rest, where, StructureError).build()
+    return fill(BUILDERS[name], rest, where, StructureError)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tensegym.errors import StructureError
-from tensegym.tables import Checked, bounded
+from tensegym.tables import Checked, bounded, choice
 
 from .blueprint import Blueprint, circle, ring, tensions_of
 
@@ -25,6 +25,8 @@ class Prism(Checked, error=StructureError):
     radius: float = bounded(0.01, 10, 0.3, "m", "of the polygons that the rods' ends are on")
     height: float = bounded(0.01, 20, 0.35, "m", "between the polygons")
     twist: float | None = bounded(0, 180, None, "deg", "of the upper polygon; else 90 - 180 / rods, in balance")
+    wound: str = choice("none", "around", "upright", "across", "all", what="where drives wind: beside those cables, or "
+                        "from lower nodes across to the ones before those above")
 
     def build(self) -> Blueprint:
         twist = balanced_twist(self.rods) if self.twist is None else np.radians(self.twist)
@@ -34,7 +36,12 @@ class Prism(Checked, error=StructureError):
         densities = {"around": 1.0, "upright": 2 * np.sin(np.pi / self.rods)}
         balanced = abs(twist - balanced_twist(self.rods)) < 1e-9
         tensions = tensions_of(nodes, cables, densities) if balanced else {}
-        return Blueprint(f"prism_{self.rods}", nodes, np.column_stack([low, np.roll(high, -1)]), cables, tensions)
+        # the upper ring is wound the other way, so that a half turn lays drives onto drives
+        ways = {"around": np.concatenate([ring(low), ring(high)[:, ::-1]]), "upright": cables["upright"],
+                "across": np.column_stack([low, np.roll(high, 1)])}  # fmt: skip
+        stiff = ways.get(self.wound, np.concatenate(list(ways.values()))) if self.wound != "none" else low[:0]
+        return Blueprint(f"prism_{self.rods}", nodes, np.column_stack([low, np.roll(high, -1)]), cables, tensions,
+                         stiff.reshape(-1, 2))  # fmt: skip
 
 
 def balanced_twist(rods: int) -> float:
@@ -57,6 +64,4 @@ class ThreeRodRobot(Checked, error=StructureError):
         upright, reach = (2 * np.sin(angle / 2) for angle in (np.pi / 6, np.pi / 6 + 2 * np.pi / 3))
         height = np.sqrt(1 - upright**2)
         radius = self.length / np.hypot(height, reach)
-        prism = Prism(3, float(radius), float(radius * height)).build()
-        return Blueprint("three_rod_robot", prism.nodes, prism.rods, prism.cables, prism.tensions,
-                         prism.cables["around"])  # fmt: skip
+        return replace(Prism(3, float(radius), float(radius * height), wound="around").build(), name="three_rod_robot")
