@@ -12,6 +12,7 @@ from tensegym.flexure.hinge.ranges import check_count
 
 ELEMENTS = 16  # a leaf as long as the hinge: exact to the elastica within 3e-7 L
 PROFILED = 4  # times as many where the thickness changes, whatever the leaf's length: there the error falls as h^2 only
+MOST_PROFILED = 256  # beyond, the stiff ends of a notch drown its web in rounding: it seems to buckle
 GAUSS = np.polynomial.legendre.leggauss(16)
 
 
@@ -31,7 +32,7 @@ class Mesh(NamedTuple):
 def mesh_of(hinge: Hinge, elements: int = ELEMENTS) -> Mesh:
     """Flat arrays of a hinge; ``elements`` for a leaf as long as the hinge, others in proportion, 4 at least.
 
-    A leaf with a profile has PROFILED times ``elements``.
+    A leaf with a profile has PROFILED times ``elements``, and MOST_PROFILED at most.
     """
     check_count("elements", elements, 1, 2000, "16 is exact to the elastica within 3e-7 L")
     order = [GROUND, *(b for b in hinge.bodies if b not in (GROUND, TIP)), TIP]
@@ -48,7 +49,7 @@ def mesh_of(hinge: Hinge, elements: int = ELEMENTS) -> Mesh:
     for leaf in hinge.leaves:
         count = max(min(elements, 4), round(elements * leaf.length / hinge.length))
         if leaf.profile is not None:
-            count = PROFILED * elements
+            count = min(PROFILED * elements, MOST_PROFILED)
         a, b = order.index(leaf.start_body), order.index(leaf.end_body)
         dx, dy = leaf.end[0] - leaf.start[0], leaf.end[1] - leaf.start[1]
         ends.append((a, b, count, first))

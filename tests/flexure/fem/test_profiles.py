@@ -76,6 +76,14 @@ def test_the_default_mesh_is_fine_for_every_preset(name):
     assert too_coarse(hinge, hinge.max_angle) == ""
 
 
+def test_the_finest_mesh_of_a_notch_is_one_that_rounding_leaves_alone():
+    """Its ends are two hundred times as thick as its web here, and a thousand elements would seem to buckle."""
+    hinge = notch_hinge(thickness=0.1e-3, length=0.02)
+    coarse, fine = (fem.apply_wrench(hinge, [0, 0.02, 0], elements=n) for n in (16, 1000))
+    assert fine.status[0] == fem.CONVERGED
+    assert fine.theta == pytest.approx(coarse.theta, rel=1e-4)
+
+
 def test_a_coarse_mesh_says_which_to_take():
     hinge = leaf_spring()
     said = too_coarse(hinge, 0.5, 1)
