@@ -25,6 +25,10 @@ class DesignError(TensegymError, ValueError):
     """A design field that is unknown, missing or outside its allowed range."""
 
 
+class ShapeError(DesignError, StructureError):
+    """A shape that the cables of a structure do not make, or do not hold."""
+
+
 class FlexureError(TensegymError, ValueError):
     """A hinge, a joint model or measured data that cannot be used as given."""
 

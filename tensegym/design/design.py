@@ -11,13 +11,12 @@ import numpy as np
 from tensegym.arrays import FloatArray, IntArray, frozen
 from tensegym.errors import DesignError, FlexureError
 from tensegym.structure import structure as structures
-from tensegym.structure.equilibrium import check_balance
-from tensegym.structure.form_finding import form_find
 from tensegym.structure.structure import Structure
 from tensegym.tables import bounded, check_fields, noted, one_line, parsed
 
 from .groups import Group, check_groups, column, groups_from, of_members
-from .parameters import Drive, ElasticCable, Payload, Rod, RodFlexure, StiffCable
+from .parameters import Drive, ElasticCable, Keep, Payload, Rod, RodFlexure, StiffCable
+from .prestress import prestressed
 from .shape import Shape, check_shape, shape_of
 
 if TYPE_CHECKING:
@@ -37,6 +36,7 @@ class RobotDesign:
                                  metadata={"what": "nodes, rods and cables, or the size of six rods"})  # fmt: skip
     name: str = noted("six_rod", "of the robot")
     form_finding: bool = noted(True, "move the nodes so that the pretension balances; else they must balance as given")
+    keep: Keep | None = noted(None, "what form finding does not change")
     passive_rod: Rod = noted(Rod(), "rods without drives")
     active_rod: Rod = noted(Rod(tube_mass=0.038, end_mass=0.2, end_mass_radius=0.016), "rods that carry drives")
     elastic_cable: ElasticCable = noted(ElasticCable(), "the cables that hold the robot")
@@ -60,18 +60,11 @@ class RobotDesign:
         for kind, pairs in (("cables", self.structure.cables), ("rods", self.structure.rods),
                             ("drives", self.structure.stiff_cables)):  # fmt: skip
             check_groups(kind, getattr(self, kind), pairs)
-        standing = given = self.built
-        tensions = self.rest_tensions
-        if not np.isnan(tensions).any():
-            if self.form_finding:
-                standing = form_find(
-                    given, tensions, payload_tension=self.payload.pretension if self.payload else 0.0,
-                )
-            else:
-                check_balance(given, tensions)
-        object.__setattr__(self, "_standing", standing)
+        found = prestressed(self.built, self.each_cable, self.cables, self.keep, self.form_finding,
+                            self.payload.pretension if self.payload else 0.0)  # fmt: skip
+        object.__setattr__(self, "_found", found)
         self._check_lengths()
-        check_shape(self.shape, standing, tensions)
+        check_shape(self.shape, self.standing, self.rest_tensions)
         object.__setattr__(self, "_rod_pins", {})
         try:
             self._check_flexures()
@@ -84,9 +77,10 @@ class RobotDesign:
         broken = np.flatnonzero(self.cable_natural_lengths <= 0)
         if len(broken):
             worst = broken[np.argmin(free[broken])]
-            cable, limit = self.each_cable[worst], self.each_cable[worst].stiffness * free[worst]
+            cable, tension = self.each_cable[worst], float(self.rest_tensions[worst])
+            limit = cable.stiffness * free[worst]
             raise DesignError(
-                f"ElasticCable.pretension = {cable.pretension!r} stretches a cable of {free[worst]:.4g} m "
+                f"ElasticCable.pretension = {tension!r} stretches a cable of {free[worst]:.4g} m "
                 f"from nothing; at stiffness {cable.stiffness:g} N/m it must be below {limit:.4g} N"
             )
         if self.payload is not None and self.payload_natural_length <= 0:
@@ -122,7 +116,7 @@ class RobotDesign:
     @property
     def standing(self) -> Structure:
         """The structure at rest: form-found, or as given."""
-        return self._standing  # type: ignore[attr-defined]
+        return self._found.structure  # type: ignore[attr-defined]
 
     @cached_property
     def shape(self) -> Shape:
@@ -171,10 +165,10 @@ class RobotDesign:
         lengths = [np.nan if rod.length is None else rod.length for rod in self.each_rod]
         return self.structure.with_rod_lengths(lengths)
 
-    @cached_property
+    @property
     def rest_tensions(self) -> FloatArray:
-        """(c,) of the elastic cables at rest [N]; NaN where a natural length is given."""
-        return frozen(np.array([c.pretension if c.natural_length is None else np.nan for c in self.each_cable], float))
+        """(c,) of the elastic cables at rest [N]; NaN of those that natural lengths hold where nothing balances."""
+        return self._found.tensions  # type: ignore[attr-defined]
 
     def rod(self, index: int) -> Rod:
         """What the rod at this index is."""
@@ -240,7 +234,7 @@ class RobotDesign:
         cables = self.each_cable
         given = np.array([np.nan if c.natural_length is None else c.natural_length for c in cables], dtype=float)
         rest = self.standing.lengths(self.standing.cables) - 2 * self.attachment_radius
-        found = rest - column(cables, "pretension") / column(cables, "stiffness")
+        found = rest - self.rest_tensions / column(cables, "stiffness")
         return np.where(np.isnan(given), found, given - 2 * self.attachment_radius)
 
     @property

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from tensegym.errors import DesignError
+from tensegym.errors import DesignError, ShapeError
 from tensegym.files import VERSION, without_version, write_text
 from tensegym.structure.structure import PAPER_ROD_LENGTH, ROD_LENGTHS, WHAT_A_ROW_HOLDS, Structure, six_rod
 from tensegym.tables import (
@@ -40,6 +40,7 @@ from tensegym.tables import (
     show,
 )
 
+from .advice import advice
 from .built import written_out
 from .design import PRESETS, RobotDesign
 from .groups import KINDS, MEMBERS, table_of
@@ -68,7 +69,12 @@ def load_design(path: str | Path) -> RobotDesign:
     """Read a TOML file. Raises as `as_design` does, naming the file."""
     data = read_toml(path, "design file", DesignError)
     with in_file(f"design file {path}"):
-        return design_from_dict(data)
+        try:
+            return design_from_dict(data)
+        except ShapeError as error:
+            said = str(error).rpartition(". ")[0] or str(error)  # without what to do in general
+            whole = {"structure": design_to_dict(PRESETS[data.get("preset", "six_rod")]())["structure"], **data}
+            raise ShapeError(one_line(f"{said}; tried: {advice(whole, design_from_dict)}")) from error
 
 
 def design_from_dict(data: dict[str, Any]) -> RobotDesign:

@@ -32,7 +32,7 @@ from .parameters import Drive, ElasticCable, Rod, StiffCable
 T = TypeVar("T")
 MEMBERS = {"cables": "cables", "rods": "rods", "drives": "stiff_cables"}  # what the groups of a design are groups of
 KINDS: dict[str, tuple[type[Any], ...]] = {"cables": (ElasticCable,), "rods": (Rod,), "drives": (Drive, StiffCable)}
-_REST = ("pretension", "natural_length")  # a group that gives one of them has none of the others from all cables
+_REST = ("pretension", "force_density", "natural_length")  # a group that gives one has none of the others of all cables
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
 
 

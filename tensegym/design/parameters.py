@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from tensegym.errors import DesignError, FlexureError
 from tensegym.structure.structure import ROD_LENGTHS
-from tensegym.tables import Checked, bounded, choice, noted, one_line
+from tensegym.tables import Checked, as_whole_rows, bounded, choice, noted, one_line
 
 if TYPE_CHECKING:
     from tensegym.flexure.hinge import Hinge
@@ -81,7 +81,25 @@ class ElasticCable(Checked, error=DesignError):
                                 "of some, see [cables.NAME]")
     natural_length: float | None = bounded(0, 100, None, "m", "given, it overrides the pretension (the paper's way)",
                                            open_low=True)
+    force_density: float | None = bounded(0, 1e6, None, "N/m", "tension over length at rest; given, it overrides the "
+                                          "pretension", open_low=True)
     two_way: bool = noted(False, "push as well as pull, as the paper's springs do")
+
+
+@dataclass(frozen=True)
+class Keep(Checked, error=DesignError):
+    """What form finding leaves as it is given; tensions change instead: those of the groups of cables or, without any,
+    all of them."""
+
+    shape: bool = noted(False, "all nodes: tensions that hold them are found, nearest to the pretension")
+    nodes: tuple[int, ...] = bounded(1, 100_000, (), "", "these nodes, by number from 1, stay where they are")
+    height: bool = noted(False, "the lowest and the highest nodes keep their heights")
+    lengths: tuple[tuple[int, ...], ...] = noted((), "pairs of nodes, by number from 1, that keep their distance")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        pairs = as_whole_rows(self.lengths, 2, "Keep.lengths", DesignError, "two node numbers")
+        object.__setattr__(self, "lengths", tuple(map(tuple, pairs.tolist())))
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tensegym.arrays import FloatArray
-from tensegym.errors import DesignError
+from tensegym.errors import ShapeError
 from tensegym.structure.equilibrium import in_words
-from tensegym.structure.form_finding import cross_matrices
+from tensegym.structure.rod_balance import cross_matrices
 from tensegym.structure.structure import Structure
 
 FLAT = 0.01  # of the longest rod: a structure thinner than this is a plane figure
@@ -61,16 +61,16 @@ def shape_of(
 
 
 def check_shape(shape: Shape, standing: Structure, tension: FloatArray) -> None:
-    """Raise DesignError for a robot that cannot be what its design says: a plane figure, or a saddle."""
+    """Raise ShapeError for a robot that cannot be what its design says: a plane figure, or a saddle."""
     if shape.flattened:
-        raise DesignError(
+        raise ShapeError(
             f"structure: form finding flattens these nodes to a plane figure, {1e3 * shape.thickness:.2g} mm thick: "
             "equal tension in all cables holds no body near them. Change the cables or the proportions"
         )
     softest = UNSTABLE * tension.max(initial=0.0) / standing.rod_lengths.max()
     if shape.least_stiffness < -softest:
-        raise DesignError(
-            f"structure: {in_words(tension)} balances these nodes but does not hold them: the stiffness is "
+        raise ShapeError(
+            f"structure: {in_words(tension)} balances these nodes but does not hold them: stiffness "
             f"{shape.least_stiffness:.3g} N/m, below 0, along a motion of nodes {_most_moved(shape.mode)}. "
             "Change the cables or the nodes"
         )

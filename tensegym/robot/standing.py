@@ -60,7 +60,14 @@ class Verdict(NamedTuple):
     @property
     def moved(self) -> str:
         """What form finding did, in words."""
-        return f"form finding moved the given nodes by up to {self.design.shape.moved:.3g} m"
+        given, found = self.design.built.nodes, self.design.standing.nodes
+        shifts = np.linalg.norm(found - given, axis=1)
+        farthest = np.flatnonzero(shifts > (1 - 1e-6) * shifts.max())[0]
+        line = f"form finding moved the given nodes by up to {shifts.max():.3g} m (node {farthest + 1})"
+        before, after = np.ptp(given[:, 2]), np.ptp(found[:, 2])
+        if abs(after - before) > 1e-3 * self.design.length:
+            line += f", their height from {before:.3g} to {after:.3g} m"
+        return line
 
     def as_dict(self) -> dict[str, Any]:
         """Plain JSON types, but for nan where there is no number."""

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import linprog
 
 from tensegym.arrays import FloatArray, IntArray
-from tensegym.errors import StructureError
+from tensegym.errors import ShapeError, StructureError
 
 from .structure import Structure
 
@@ -118,6 +118,56 @@ def out_of_balance(structure: Structure, tension: ArrayLike) -> FloatArray:
     load = matrix[:, :count] @ densities
     rods, *_ = np.linalg.lstsq(matrix[:, count:], -load, rcond=None)
     return (load + matrix[:, count:] @ rods).reshape(-1, 3)
+
+
+def holding_tensions(structure: Structure, wanted: FloatArray, payload_tension: float = 0.0) -> FloatArray:
+    """Tensions of the elastic cables that hold the nodes as they are, nearest to the ``wanted`` ones.
+
+    The sum of their squared differences is least over the self-stresses; where some of those would push, the
+    self-stress whose weakest cable pulls most takes their place, at the same mean.
+
+    Args:
+        structure: what is held.
+        wanted: (c,) [N].
+        payload_tension: in one spring from every rod's middle to a common central body [N], in balance too.
+
+    Returns:
+        (c,) [N], above 0.
+
+    Raises:
+        ShapeError: no tensions do; it says why.
+    """
+    pairs, count = members(structure), len(structure.cables)
+    lengths = structure.lengths(pairs)
+    matrix = equilibrium_matrix(structure) / lengths
+    inward = _payload_pull(structure, payload_tension)
+    _, values, right = np.linalg.svd(matrix)
+    rank = int((values > RANK_TOLERANCE * values[0]).sum())
+    first, states = np.linalg.lstsq(matrix, -inward.ravel(), rcond=RANK_TOLERANCE)[0], right[rank:].T
+    out = np.abs(matrix @ first + inward.ravel()).max()
+    if out > BALANCE_TOLERANCE * wanted.max(initial=payload_tension):
+        raise ShapeError(f"no tensions hold these nodes with the payload's pull of {payload_tension:g} N: {out:.2g} N "
+                         "are left; move them, or let form finding do so")  # fmt: skip
+    best = np.linalg.lstsq(states[:count], wanted - first[:count], rcond=None)[0]
+    found: FloatArray = (first + states @ best)[:count]
+    if count and found.min() <= 0.01 * wanted.min():
+        weakest = feasible_self_stress(structure) if not payload_tension else None
+        if weakest is None:
+            raise ShapeError("no tensions hold these nodes: they have no self-stress in which every cable pulls; move "
+                             "them, or let form finding do so")  # fmt: skip
+        found = weakest[:count] * lengths[:count]
+        found *= wanted.mean() / found.mean()
+    return found
+
+
+def _payload_pull(structure: Structure, tension: float) -> FloatArray:
+    """(n, 3) what springs from the rods' middles to the middle of those come to at the rods' ends [N]."""
+    pull = np.zeros_like(structure.nodes)
+    if tension:
+        middles = structure.nodes[structure.rods].mean(axis=1)
+        inward = middles.mean(axis=0) - middles
+        pull[structure.rods] = (tension / 2 * inward / np.linalg.norm(inward, axis=1)[:, None])[:, None]
+    return pull
 
 
 def in_words(tension: ArrayLike) -> str:

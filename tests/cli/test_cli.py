@@ -359,7 +359,8 @@ def test_no_command_uses_a_robot_that_falls_without_a_word(cli, tmp_path):
     moved = falls.with_name("tall_4prism.toml")
     status, _, told = cli("simulate", "--commands", none, "--out", tmp_path / "out.csv", "--design", moved)
     assert status == 0
-    assert told == "tensegym: robot 'tall_4prism' stands; form finding moved the given nodes by up to 0.366 m\n"
+    assert told == ("tensegym: robot 'tall_4prism' stands; form finding moved the given nodes by up to 0.366 m "
+                    "(node 1), their height from 0.9 to 0.348 m\n")  # fmt: skip
 
 
 def test_simulate_takes_the_papers_robot_in_its_pose(cli, tmp_path):

@@ -3,7 +3,8 @@ import pytest
 
 from tensegym.errors import StructureError
 from tensegym.structure.equilibrium import check_balance, feasible_self_stress
-from tensegym.structure.form_finding import _RodBalance, form_find
+from tensegym.structure.form_finding import form_find
+from tensegym.structure.rod_balance import Kept, Law, RodBalance
 from tensegym.structure.structure import PAPER_ROD_LENGTH, Structure, paper, six_rod
 
 
@@ -24,15 +25,22 @@ def test_payload_draws_the_rods_together_as_the_closed_form_says(payload_tension
     assert 4 * 10 / cable * (h - 2 * d) == pytest.approx(payload_tension, rel=1e-6)
 
 
+KEPT = Kept(np.array([[0, 2], [4, 0]]), np.array([[0, 7], [2, 9]]), np.arange(24) % 3 - 1, True)
+
+
 @pytest.mark.parametrize("payload", [0.0, 0.3])
-def test_the_jacobian_is_the_residuals(payload):
+@pytest.mark.parametrize("kept", [None, KEPT])
+def test_the_jacobian_is_the_residuals(payload, kept):
     shifts = np.random.default_rng(0).normal(0, 0.03, (12, 3))
-    balance = _RodBalance(six_rod().with_nodes(six_rod().nodes + shifts), np.linspace(0.8, 1, 24), payload)
-    shape, step = balance.start, 1e-6
-    sides = [[balance.residual(balance.moved(shape, sign * step * row)).ravel() for row in np.eye(shape.size)]
+    law = Law(np.linspace(0.8, 1, 24), np.linspace(0, 2, 24))
+    balance = RodBalance(six_rod().with_nodes(six_rod().nodes + shifts), law, payload, kept)
+    state, step = balance.start, 1e-6
+    count = state.rows.size + state.logs.size
+    sides = [[np.concatenate([balance.residual(moved).ravel(), balance.missed(moved)])
+              for row in np.eye(count) for moved in [balance.moved(state, sign * step * row)]]
              for sign in (1, -1)]  # fmt: skip
     differences = np.subtract(*sides).T / (2 * step)
-    np.testing.assert_allclose(balance.jacobian(shape), differences, atol=1e-8)
+    np.testing.assert_allclose(balance.jacobian(state), differences, atol=1e-8)
 
 
 @pytest.mark.parametrize("spacing", [0.33, 0.6, PAPER_ROD_LENGTH * 0.89])
