@@ -73,8 +73,11 @@ def load_design(path: str | Path) -> RobotDesign:
             return design_from_dict(data)
         except ShapeError as error:
             said = str(error).rpartition(". ")[0] or str(error)  # without what to do in general
-            whole = {"structure": design_to_dict(PRESETS[data.get("preset", "six_rod")]())["structure"], **data}
-            raise ShapeError(one_line(f"{said}; tried: {advice(whole, design_from_dict)}")) from error
+            base = PRESETS[data.get("preset", "six_rod")]()
+            data = written_out(data, base.elastic_cable)
+            structure = _structure_table(_structure(data.get("structure", {}), base.structure))
+            tried = advice({**data, "structure": structure}, design_from_dict)
+            raise ShapeError(one_line(f"{said}; tried: {tried}")) from error
 
 
 def design_from_dict(data: dict[str, Any]) -> RobotDesign:
@@ -114,14 +117,17 @@ def _structure(data: Any, base: Structure) -> Structure:
     return Structure(**parts)
 
 
+def _structure_table(structure: Structure) -> dict[str, Any]:
+    return {"nodes": structure.nodes.tolist(), **{m: (getattr(structure, m) + 1).tolist() for m in _MEMBERS}}
+
+
 def design_to_dict(design: RobotDesign) -> dict[str, Any]:
     """Plain types; `design_from_dict` gives the same design back."""
     data: dict[str, Any] = {}
     for f in fields(RobotDesign):
         value = getattr(design, f.name)
         if isinstance(value, Structure):
-            members = {m: (getattr(value, m) + 1).tolist() for m in _MEMBERS}
-            data[f.name] = {"nodes": value.nodes.tolist(), **members}
+            data[f.name] = _structure_table(value)
         elif f.name in KINDS:
             if value:
                 data[f.name] = {group.name: table_of(group) for group in value}
