@@ -1,7 +1,8 @@
 """Replays: what a robot did, recorded while it did it, kept in one file that any browser plays, and drawn.
 
 `recording.py` is the data, `recorder.py` makes it while an episode runs, `replay_file.py` writes and reads the file,
-`parts.py` says what is seen of a robot, `page/` is the page that plays it.
+`page/` is the page that
+plays it, `scenery.py` what the page draws.
 """
 
 from .recorder import Recorder

@@ -23,11 +23,12 @@ from tensegym.files import VERSION, check_file, without_version, write_text
 from tensegym.physics.terrain import FLAT, Ground
 from tensegym.tables import as_number, as_text, in_file, mapping, parse_json, read_text
 
-from .parts import scenery
 from .recording import SHAPES, Recording
+from .scenery import scenery
 
 MOST_BYTES = 1 << 30  # of a recording when unpacked
 _SLOT = "RECORDING"
+_PAGE = ("replay.css", "unpack.js", "robot.js", "view.js", "plots.js", "replay.js")  # what replay.html is made of
 _PATTERN = re.compile(r'<script id="recording" type="text/plain">([A-Za-z0-9+/=]*)</script>')
 
 
@@ -43,7 +44,7 @@ def write_replay(recording: Recording, path: str | Path) -> None:
     check_replay(Path(path))
     page = files("tensegym.replay") / "page"
     text = (page / "replay.html").read_text(encoding="utf-8")
-    for name in ("replay.css", "replay.js"):
+    for name in _PAGE:
         text = text.replace(f"/* {name} */", (page / name).read_text(encoding="utf-8"))
     write_text(Path(path), text.replace(_SLOT, base64.b64encode(pack(recording)).decode("ascii"), 1))
 
@@ -69,7 +70,8 @@ def pack(recording: Recording) -> bytes:
     header = {
         "version": VERSION, "title": recording.title, "engine": recording.engine, "dt": recording.dt,
         "ground": None if ground is None else ground.cell, "design": design_to_dict(recording.design),
-        "arrays": {name: array.shape for name, array in arrays.items()}, "scenery": scenery(recording),
+        "arrays": {name: array.shape for name, array in arrays.items()}, "order": list(arrays),
+        "scenery": scenery(recording),
     }  # fmt: skip
     head = json.dumps(header, allow_nan=False).encode()
     head += b" " * (-len(head) % 4)  # so that the arrays are aligned

@@ -18,7 +18,7 @@ from tensegym.design.variation import Variation
 from tensegym.processes import process_map
 from tensegym.robot.robot import TensegrityRobot
 
-from .episode import Episode
+from .episode import Episode, Watcher
 from .rollout import Result, rollout, whole_steps
 from .task import Task
 
@@ -87,7 +87,9 @@ def _episodes(setup: Setup, seeds: tuple[int, ...]) -> list[Result]:
     return list(iterate(setup, make_controller(setup.controller), seeds))
 
 
-def iterate(setup: Setup, controller: Controller, seeds: Sequence[int]) -> Generator[Result, None, None]:
+def iterate(
+    setup: Setup, controller: Controller, seeds: Sequence[int], watcher: Watcher | None = None
+) -> Generator[Result, None, None]:
     """Episodes in turn, in this process; on one robot where it stays the same and none has diverged."""
     robot: TensegrityRobot | None = None
     disturb = setup.task.disturb
@@ -102,7 +104,7 @@ def iterate(setup: Setup, controller: Controller, seeds: Sequence[int]) -> Gener
                 if robot:
                     robot.close()
                 robot = setup.robot(design)
-            result = rollout(robot, controller, setup.task, seed, rng=rng)
+            result = rollout(robot, controller, setup.task, seed, rng=rng, watcher=watcher)
             if result.diverged:  # what is left in the engine's caches may be no numbers either
                 robot.close()
                 robot = None
