@@ -9,7 +9,7 @@ export OMP_NUM_THREADS := 1
 .PHONY: help setup test fuzz lint demo train bench validate clean
 
 help:
-	@echo "make demo   roll the shipped policy: demo/metrics.json, gait.png, roll.mp4"
+	@echo "make demo   roll the shipped policy: demo/run.html, metrics.json, gait.png, roll.mp4"
 	@echo "make test   all tests"
 	@echo "make fuzz   20,000 damaged inputs for every reader of a file, and for the environment: a quarter of an hour"
 	@echo "make lint   ruff and mypy"
@@ -39,7 +39,7 @@ lint: $(STAMP)
 	$(BIN)/mypy
 
 demo: $(STAMP)
-	$(BIN)/tensegym roll --out demo
+	$(BIN)/tensegym roll --out demo --replay demo/run.html
 
 train: $(STAMP)
 	$(BIN)/tensegym train --config rolling --seed 0

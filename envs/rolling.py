@@ -225,12 +225,17 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         return self._seen(episode), sum(terms.values()), episode.ended is not None, False, info
 
     def render(self) -> NDArray[np.uint8] | None:
-        """(360, 480, 3) picture that follows the robot, cables coloured by tension; None in human mode."""
+        """(360, 480, 3) picture that follows the robot, cables coloured by tension, an arrow where it is to go; None in
+        human mode."""
         if self.render_mode == "rgb_array":
-            return render(self.robot)
+            return render(self.robot, direction=self._wanted())
         if self.render_mode == "human":
             draw_in_window(self.robot)
         return None
+
+    def _wanted(self) -> FloatArray | None:
+        """(2,) unit vector that the episode wants the robot to go along; None where none has begun."""
+        return self.episode.bearing.direction if self.episode and not self.episode.diverged else None
 
     def close(self) -> None:
         """Free the physics client; the environment cannot be used again."""

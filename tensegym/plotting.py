@@ -37,7 +37,20 @@ def new_figure(
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=size, layout=layout)
-    return figure, figure.subplots(rows, columns, **options)
+    axes = figure.subplots(rows, columns, **options)
+    for axis in figure.axes:
+        axis.grid(color="0.9", lw=0.8)
+        axis.set_axisbelow(True)
+        for side in ("top", "right"):
+            axis.spines[side].set_visible(False)
+    return figure, axes
+
+
+def thin_legend(axis: Any, columns: int = 1, loc: str = "best") -> None:
+    """A legend whose lines can be told apart, and through which the curves behind it can be seen."""
+    legend = axis.legend(ncols=columns, loc=loc, fontsize="small", framealpha=0.85)
+    for line in legend.get_lines():
+        line.set_linewidth(max(1.5, line.get_linewidth()))
 
 
 def save(figure: Any, path: Path, dpi: int = 110) -> None:

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from contextlib import closing
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
-from tensegym.control.table import make_controller
 from tensegym.errors import InputError
 from tensegym.files import VERSION, lock_folder, write_text
+from tensegym.replay.gait_figure import draw_gait
+from tensegym.replay.replay_file import check_replay, write_replay
+from tensegym.replay.retake import median_of, retake
+from tensegym.replay.video import write_video
 from tensegym.report import Report, table, to_json
 from tensegym.robot.step_check import LARGEST_TIME_STEP, LEAST_TIME_STEP
 from tensegym.tables import fill, in_file, read_toml
 from tensegym.tasks.disturbance import Disturbance
-from tensegym.tasks.figures import GaitRecorder, draw_gait, write_video
 from tensegym.tasks.motions import load_task
 from tensegym.tasks.policy_trials import FIRST_SEED, baseline_setups, policy_setup
-from tensegym.tasks.rollout import rollout
+from tensegym.tasks.rollout import Result
 from tensegym.tasks.trials import Setup, check_setup, run_trials, summarise
 
 from .options import Count, Jobs, Within
@@ -53,7 +55,9 @@ class Evaluate:
     observation: str | None = None
     """Observation to evaluate with, in place of the policy's own."""
     video: bool = True
-    """Write roll.mp4 of the first episode."""
+    """Write roll.mp4 of the median episode."""
+    replay: Path | None = None
+    """Write the median episode as one HTML file, such as run.html, that any browser plays without a network."""
     jobs: Jobs | None = None
     """Processes; default: one a core."""
 
@@ -67,6 +71,8 @@ class Evaluate:
                 disturb = fill(Disturbance, read_toml(self.disturb, "disturbance", InputError), "disturb", InputError)
             setup = replace(setup, task=setup.task.changed(disturb=disturb))
         check_setup(setup)  # a policy that does not fit fails here, before anything is written
+        if self.replay is not None:
+            check_replay(self.replay, self.out)
         with lock_folder(self.out):
             tell_unless_standing(setup.design, setup.task.engine)
             return self._evaluate(setup)
@@ -85,16 +91,18 @@ class Evaluate:
                 "summaries": summaries,
                 "episodes": {name: [result.row() for result in each] for name, each in results.items()}}  # fmt: skip
         write_text(self.out / "metrics.json", to_json({"version": VERSION, **data}, indent=1) + "\n")
-        self._draw(setup, [result.gait.speed_lps for result in results[self.policy]])
+        self._draw(setup, results[self.policy])
         return Report(_text(summaries, setup.task.MEASURES), {"out": str(self.out), "dt": dt, "summaries": summaries})
 
-    def _draw(self, setup: Setup, speeds_lps: list[float]) -> None:
-        recorder = GaitRecorder(pictures=self.video)
-        with closing(setup.robot()) as robot:
-            rollout(robot, make_controller(setup.controller), setup.task, FIRST_SEED, watcher=recorder)
-        draw_gait(recorder, speeds_lps, self.out / "gait.png")
+    def _draw(self, setup: Setup, results: Sequence[Result]) -> None:
+        speeds = [result.gait.speed_lps for result in results]
+        seed = results[median_of(speeds)].seed
+        recording = retake(setup, seed, f"{self.policy}: the median of {len(speeds)} episodes, seed {seed}")
+        draw_gait(recording, speeds, self.out / "gait.png")
         if self.video:
-            write_video(recorder.frames, self.out / "roll.mp4")
+            write_video(recording, self.out / "roll.mp4")
+        if self.replay is not None:
+            write_replay(recording, self.replay)
 
 
 def _text(summaries: dict[str, dict[str, Any]], measures: tuple[str, ...]) -> str:

@@ -31,6 +31,8 @@ class Roll:
     """Episodes in the table."""
     engine: str | None = None
     """Physics engine: pybullet, or mujoco (extra mujoco); default: the task's."""
+    replay: Path | None = None
+    """Write the median episode as one HTML file, such as run.html, that any browser plays without a network."""
     window: bool = False
     """Instead: watch one episode in PyBullet's window, in real time; needs a display, writes nothing."""
 
@@ -38,7 +40,8 @@ class Roll:
         if self.window:
             return self._watch()
         plain = "design" not in policy_env(self.policy)  # another robot's walker takes minutes to tabulate
-        return Evaluate(self.policy, self.out, self.episodes, engine=self.engine, baselines=plain).run()
+        return Evaluate(self.policy, self.out, self.episodes, engine=self.engine, baselines=plain,
+                        replay=self.replay).run()  # fmt: skip
 
     def _watch(self) -> Report:
         setup = policy_setup(self.policy, engine=self.engine)

@@ -16,6 +16,8 @@ from tensegym.design.design_file import as_design
 from tensegym.errors import DesignError, InputError
 from tensegym.files import check_file, replace_file
 from tensegym.physics import drives
+from tensegym.replay import Recorder, write_replay
+from tensegym.replay.replay_file import check_replay
 from tensegym.report import Report, table
 from tensegym.robot.gait import GaitMeter
 from tensegym.robot.robot import TensegrityRobot
@@ -48,10 +50,14 @@ class Simulate:
     """Physics engine: pybullet, or mujoco (extra mujoco)."""
     sample: Annotated[float, Within(1e-6, 10.0, "s")] = 0.01
     """Time between rows of the output [s]."""
+    replay: Path | None = None
+    """Write the motion as one HTML file too, such as run.html, that any browser plays without a network."""
 
     def run(self) -> Report:
         design = as_design(self.design)
         check_file(self.out)
+        if self.replay is not None:
+            check_replay(self.replay)
         times, angles = read_commands(self.commands, len(design.structure.stiff_cables))
         every = round(self.sample / self.dt)
         if every < 1 or not math.isclose(every * self.dt, self.sample, rel_tol=1e-6):
@@ -65,19 +71,23 @@ class Simulate:
             except DesignError as error:
                 raise InputError(f"{self.commands}: {error}") from error
             meter = GaitMeter(robot, np.array([1.0, 0.0]))
-            rows = [_row(robot)]
+            rows, recorder = [_row(robot)], Recorder(f"{design.name} under {self.commands.name}")
+            recorder.look(robot)
             for _ in range(round((times[-1] - times[0]) / self.sample)):
                 for _ in range(every):
                     robot.command(commands.angles(robot))
                     robot.step()
                 meter.update()
                 rows.append(_row(robot))
+                recorder.look(robot, face=meter.face)
             header = _header(robot)
             gait = meter.metrics()
         with replace_file(self.out) as file:
             writer = csv.writer(file)
             writer.writerow(header)
             writer.writerows([[f"{v:.9g}" for v in row] for row in rows])
+        if self.replay is not None:
+            write_replay(recorder.recording(), self.replay)
         data = {"out": str(self.out), "rows": len(rows), "columns": len(header), **gait.as_dict(),
                 "standing": standing, "fault": meter.fault}  # fmt: skip
         text = table(["out", "rows", "columns", "path m", "tips", "slip share", "energy J", "audit excess"],

@@ -14,13 +14,14 @@ from tensegym.design.design_file import as_design
 from tensegym.errors import InputError, SimulationError
 from tensegym.plotting import require_matplotlib
 from tensegym.progress import progress_bar
+from tensegym.replay.replay_file import check_replay, write_replay
+from tensegym.replay.step_figure import PERIOD, draw_drives, draw_storyboard, record_step
 from tensegym.report import Report, table
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.robot.standing import Verdict, standing_verdict
 from tensegym.robot.step_check import LARGEST_TIME_STEP, LEAST_TIME_STEP
 from tensegym.structure.faces import face_by_nodes
 
-from .figures import PERIOD, draw_drives, draw_storyboard, record_step
 from .options import Within
 
 
@@ -44,6 +45,8 @@ class Step:
     """A preset (six_rod, six_rod_flexible, paper) or a TOML file."""
     out: Path = Path("step")
     """Folder to write in."""
+    replay: Path | None = None
+    """Write the step as one HTML file too, such as run.html, that any browser plays without a network."""
     dt: Annotated[float, Within(LEAST_TIME_STEP, LARGEST_TIME_STEP, "s")] = 2e-3
     """Physics time step [s]."""
     engine: str = "pybullet"
@@ -58,6 +61,8 @@ class Step:
             raise InputError(f"dt = {self.dt!r} s must divide {PERIOD} s")
         if self.out.exists() and not self.out.is_dir():
             raise InputError(f"--out {self.out} is a file; give a folder")
+        if self.replay is not None:
+            check_replay(self.replay, self.out)
         require_matplotlib()
         verdict = standing_verdict(design, self.engine)
         if verdict.falls_everywhere:
@@ -74,6 +79,8 @@ class Step:
             record = record_step(robot, tip)
         draw_storyboard(record, self.out / "storyboard.png")
         draw_drives(record, self.out / "drives.png")
+        if self.replay is not None:
+            write_replay(record, self.replay)
         names = robot.faces.names()
         pulled = ", ".join(str(d + 1) for d in tip.pull.drives)
         travel = float(np.hypot(*tip.travel))

@@ -15,6 +15,7 @@ from tensegym.physics.geometry import points_at
 from tensegym.physics.model import Model
 from tensegym.physics.robot_arrays import robot_model
 from tensegym.physics.terrain import FLAT, Ground
+from tensegym.structure.faces import Faces, hull_faces
 
 SHAPES: dict[str, tuple[str | int, ...]] = {
     "times": ("t",), "poses": ("t", "b", 7), "bends": ("t", "p"), "tensions": ("t", "c"), "commands": ("t", "w"),
@@ -69,7 +70,7 @@ class Recording:
     path: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
     """(k, 2) points of the path it is to follow [m]."""
     boxes: FloatArray = field(default_factory=lambda: np.zeros((0, 10)))
-    """(x, 10) obstacles: centre [m], quaternion xyzw, sides [m]."""
+    """(x, 10) obstacles: centre [m], half sides [m], quaternion xyzw."""
     ground: Ground | None = FLAT
     """The plane z = 0, bumps about the origin, or none."""
     gravity: FloatArray = field(default_factory=lambda: np.array([0.0, 0.0, -9.81]))
@@ -126,7 +127,21 @@ class Recording:
         bodies, points = self.model.node_bodies, self.model.node_points
         return np.stack([points_at(poses, bodies, points) for poses in self.poses])
 
+    @cached_property
+    def _faces(self) -> Faces:
+        return hull_faces(self.design.standing)
+
     @property
+    def triangles(self) -> IntArray:
+        """(f, 3) nodes of the faces that `faces` counts."""
+        return self._faces.triangles
+
+    @property
+    def planes(self) -> IntArray:
+        """(f,) of each face the first one that is level with it: standing on either is the same."""
+        return self._faces.planes
+
+    @cached_property
     def centres(self) -> FloatArray:
         """(t, 3) centre of mass [m]."""
         masses = self.model.masses

@@ -32,11 +32,13 @@ _PAGE = ("replay.css", "unpack.js", "robot.js", "view.js", "plots.js", "replay.j
 _PATTERN = re.compile(r'<script id="recording" type="text/plain">([A-Za-z0-9+/=]*)</script>')
 
 
-def check_replay(path: Path) -> None:
-    """Look whether a replay can be written at a path. Raises FileNotFoundError or InputError."""
+def check_replay(path: Path, to_be: Path | None = None) -> None:
+    """Look whether a replay can be written at a path, or could once the folder ``to_be`` is there. Raises
+    FileNotFoundError or InputError."""
     if path.suffix.lower() not in (".html", ".htm"):
         raise InputError(f"a replay is an HTML file, its name ends in .html; given {str(path)!r}")
-    check_file(path)
+    if to_be is None or path.parent.resolve() != to_be.resolve() or path.exists():
+        check_file(path)
 
 
 def write_replay(recording: Recording, path: str | Path) -> None:

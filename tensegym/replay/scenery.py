@@ -8,8 +8,7 @@ import numpy as np
 
 from tensegym.design.solids import solids
 from tensegym.plotting import COLOURS
-from tensegym.robot.rendering import FULL_SCALE, tension_colour
-from tensegym.structure.faces import hull_faces
+from tensegym.robot.sight import FULL_SCALE, tension_colour
 
 from .recording import Recording
 
@@ -26,7 +25,7 @@ def scenery(recording: Recording) -> dict[str, Any]:
                    "points": np.round(model.spring_params[:cables, :6], 6).tolist(),
                    "driven": [model.driven.start, model.driven.stop]},
         "nodes": {"bodies": model.node_bodies.tolist(), "points": np.round(model.node_points, 6).tolist()},
-        "faces": hull_faces(design.standing).triangles.tolist(),
+        "faces": recording.triangles.tolist(),
         "colours": list(COLOURS), "full_scale": FULL_SCALE,
         "tension_colours": [tension_colour(FULL_SCALE * share) for share in np.linspace(1e-6, 1, 13)],
     }  # fmt: skip

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 from importlib.util import find_spec
-from weakref import WeakKeyDictionary
-
-import numpy as np
 
 from tensegym.bullet import BulletWorld
 from tensegym.bullet.camera import Camera
@@ -15,7 +12,6 @@ from tensegym.tables import as_text, show
 
 TITLES = {"pybullet": "PyBullet", "mujoco": "MuJoCo"}
 ENGINES = tuple(TITLES)
-_PICTURED: WeakKeyDictionary[World, BulletWorld] = WeakKeyDictionary()
 
 
 def open_world(engine: str, scene: Scene, gui: bool = False, compiled: bool | None = None) -> World:
@@ -57,13 +53,8 @@ def _installed(library: str) -> bool:
         return False
 
 
-def camera_of(world: World) -> Camera:
-    """What takes its pictures: PyBullet's camera, of a copy of the bodies where another engine moves them."""
-    if isinstance(world, BulletWorld):
-        return world.camera
-    if world not in _PICTURED:
-        _PICTURED[world] = BulletWorld(world.scene)
-    copy = _PICTURED[world]
-    poses, angles = world.read()
-    copy.place(poses, np.zeros((len(poses), 6)), angles)
-    return copy.camera
+def window_of(world: World) -> Camera:
+    """What draws into its window. Raises SimulationError for an engine that has none."""
+    if not isinstance(world, BulletWorld):
+        raise SimulationError("only PyBullet has a window: make the robot with gui=True, or take pictures of it")
+    return world.camera

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from tensegym.arrays import FloatArray
-from tensegym.control.table import make_controller
 from tensegym.design.design import RobotDesign
 from tensegym.plotting import new_figure, save
-from tensegym.tasks.figures import GaitRecorder, draw_gait
-from tensegym.tasks.rollout import rollout
+from tensegym.replay.gait_figure import draw_gait
+from tensegym.replay.retake import median_of, retake
 from tensegym.tasks.task import Task
 from tensegym.tasks.trials import Setup
 
@@ -66,9 +64,9 @@ def draw_importance(shares: Mapping[str, float], out: Path, most: int = 15) -> N
 def draw_best_gait(
     design: RobotDesign, control: dict[str, Any], task: Task, seed: int, rows: Sequence[Episode], out: Path
 ) -> None:
-    """One episode of the found design, and the speeds of all."""
-    recorder = GaitRecorder()
+    """The median episode of the found design, and the speeds of all: ``rows`` of the seeds from ``seed`` on."""
     task = task.changed(dt=TIME_STEP, patience=task.seconds)
-    with closing(Setup("best", task, control, design).robot()) as robot:
-        rollout(robot, make_controller(control), task, seed, watcher=recorder)
-    draw_gait(recorder, [row["speed_lps"] for row in rows], out)
+    speeds = [row["speed_lps"] for row in rows]
+    seed += median_of(speeds)
+    title = f"{design.name}: the median of {len(speeds)} episodes, seed {seed}"
+    draw_gait(retake(Setup("best", task, control, design), seed, title), speeds, out)

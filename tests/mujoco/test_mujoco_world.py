@@ -9,7 +9,6 @@ from tensegym.design.design import Payload, RobotDesign, flexible_design
 from tensegym.errors import DesignError, SimulationError
 from tensegym.mujoco import c_interface
 from tensegym.physics.terrain import Terrain
-from tensegym.robot.engines import camera_of
 from tensegym.robot.rendering import render
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.validation.flight import free_flight
@@ -106,8 +105,6 @@ def test_a_closed_world_is_an_error():
 
 def test_pictures_are_of_where_the_bodies_are():
     with TensegrityRobot(flexible_design(), engine="mujoco") as robot, TensegrityRobot(flexible_design()) as other:
-        camera = camera_of(robot.world)
-        assert camera_of(robot.world).client == camera.client
         assert (render(robot) != render(other)).mean() < 5e-3  # but for pixels that the last bit decides
         robot.push([5.0, 0, 0])
         before = render(robot)
