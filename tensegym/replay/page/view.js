@@ -85,7 +85,7 @@ class View {
     if (this.numbers) this.drawNumbers();
   }
 
-  height(x, y) { // of the ground [m]
+  level(x, y) { // of the ground [m]
     const { heights } = this.recording.arrays, n = heights.width, cell = this.recording.ground;
     if (!n) return 0;
     const u = Math.min(n - 2, Math.max(0, x / cell + (n - 1) / 2)), v = Math.min(n - 2, Math.max(0, y / cell + (n - 1) / 2));
@@ -108,7 +108,7 @@ class View {
           const ends = [j, Math.min(count, j + step)].map((k) => {
             const at = swap ? [k, i] : [i, k];
             const x = middle[0] + spacing * at[0], y = middle[1] + spacing * at[1];
-            return [x, y, this.height(x, y)];
+            return [x, y, this.level(x, y)];
           });
           this.line(ends[0], ends[1], colour, 1);
         }
@@ -116,7 +116,7 @@ class View {
     }
   }
 
-  onGround(x, y) { return [x, y, this.height(x, y) + 0.002]; }
+  onGround(x, y) { return [x, y, this.level(x, y) + 0.002]; }
 
   drawGoal() {
     const { arrays } = this.recording, robot = this.robot, length = robot.scenery.length;
