@@ -22,7 +22,7 @@ from tensegym.robot.fallen import FALLEN, FLAT, has_fallen
 from tensegym.robot.rendering import draw_in_window, render
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.tables import as_whole, known, show
-from tensegym.tasks.episode import Episode
+from tensegym.tasks.episode import Episode, Watcher
 from tensegym.tasks.motions import as_task
 from tensegym.tasks.rollout import whole_steps
 from tensegym.tasks.start import OPTIONS, check_options
@@ -144,6 +144,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         self.observation_space: spaces.Box = _box(self.observation)
         self.action_space: spaces.Box = spaces.Box(-1.0, 1.0, (len(self.robot.drives),), dtype=np.float32)
         self.episode: Episode | None = None
+        self.watcher: Watcher | None = None  # looks on while the robot moves
         self._fallen: RobotDesign | None = None
         self._closed = False
 
@@ -214,7 +215,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         SimulationError before the first reset; the environment is as it was then."""
         command = self._checked(action)
         episode = self._running()
-        terms = episode.advance(self.robot.angles_of(command), self.substeps)
+        terms = episode.advance(self.robot.angles_of(command), self.substeps, self.watcher)
         info: dict[str, Any] = {"reward_terms": terms, "gait": episode.gait.as_dict()}
         if self.task.MEASURES:
             info["measures"] = self.task.measures(episode)
@@ -228,14 +229,10 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         """(360, 480, 3) picture that follows the robot, cables coloured by tension, an arrow where it is to go; None in
         human mode."""
         if self.render_mode == "rgb_array":
-            return render(self.robot, direction=self._wanted())
+            return render(self.robot, direction=self.episode.bearing.direction if self.episode else None)
         if self.render_mode == "human":
             draw_in_window(self.robot)
         return None
-
-    def _wanted(self) -> FloatArray | None:
-        """(2,) unit vector that the episode wants the robot to go along; None where none has begun."""
-        return self.episode.bearing.direction if self.episode and not self.episode.diverged else None
 
     def close(self) -> None:
         """Free the physics client; the environment cannot be used again."""

@@ -28,6 +28,7 @@ Tasks:
     rollout           one episode of a controller at a task on a robot
     load_policy       a shipped policy, or your own run's, as a function of the observation
     evaluate          figures of a policy over many episodes
+    record            an environment that leaves a replay, or a video, of every episode
 
 Flexible joints:
     fit_joint         joint models fitted to a hinge's finite elements, with their errors
@@ -65,6 +66,7 @@ if TYPE_CHECKING:
     from tensegym.flexible import FlexibleRobot
     from tensegym.flexure.models import fit_joint, load_joint
     from tensegym.physics.terrain import Terrain
+    from tensegym.replay.record import record
     from tensegym.robot.gait import GaitMeter, GaitMetrics
     from tensegym.robot.robot import TensegrityRobot
     from tensegym.robot.standing import standing_verdict
@@ -73,7 +75,7 @@ if TYPE_CHECKING:
 __all__ = [
     "DesignError", "FlexibleRobot", "FlexureError", "GaitMeter", "GaitMetrics", "InputError", "RobotDesign",
     "SimulationError", "StructureError", "Task", "TensegrityRobot", "TensegymError", "Terrain", "as_task", "evaluate",
-    "fit_joint", "load_design", "load_joint", "load_policy", "rollout",
+    "fit_joint", "load_design", "load_joint", "load_policy", "record", "rollout",
     "standing_verdict",
 ]  # fmt: skip
 
@@ -85,6 +87,7 @@ _HOMES = {
     "flexible": ("FlexibleRobot",),
     "flexure.models": ("fit_joint", "load_joint"),
     "physics.terrain": ("Terrain",),
+    "replay.record": ("record",),
     "robot.gait": ("GaitMeter", "GaitMetrics"),
     "robot.robot": ("TensegrityRobot",),
     "robot.standing": ("standing_verdict",),

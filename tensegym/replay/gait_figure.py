@@ -76,11 +76,12 @@ def draw_tensions(axis: Any, recording: Recording) -> None:
         low, high = elastic.min(axis=1), elastic.max(axis=1)
         axis.fill_between(times, low, high, color="0.85", lw=0, label="elastic cables")
     for d, values in enumerate(recording.tensions[:, driven].T):
-        axis.plot(times, values, color=COLOURS[d % len(COLOURS)], lw=1, label=f"cable of drive {d + 1}")
-    axis.axhline(recording.limits.tension, color="k", ls="--", lw=1, label="drive's limit")
+        axis.plot(times, values, color=COLOURS[d % len(COLOURS)], lw=1, label=f"wound by drive {d + 1}")
+    limit = recording.limits.tension
+    axis.axhline(limit, color="k", ls="--", lw=1, label="drive's limit")
     axis.set(xlabel="time [s]", ylabel="tension [N]", title="Cables", xlim=(times[0], times[-1]))
-    axis.set_ylim(bottom=min(0.0, float(recording.tensions.min())))
-    thin_legend(axis, columns=3)
+    axis.set_ylim(min(0.0, float(recording.tensions.min())), 1.45 * max(limit, float(recording.tensions.max())))
+    thin_legend(axis, columns=3, loc="upper center")
 
 
 def draw_currents(axis: Any, recording: Recording) -> None:
@@ -91,5 +92,5 @@ def draw_currents(axis: Any, recording: Recording) -> None:
     for sign, label in ((-1, None), (1, "limits")):
         axis.axhline(sign * recording.limits.current, color="k", ls="--", lw=1, label=label)
     axis.set(xlabel="time [s]", ylabel="current [A]", title="Drives", xlim=(times[0], times[-1]))
-    axis.set_ylim(-1.6 * recording.limits.current, 1.15 * recording.limits.current)
-    thin_legend(axis, columns=4, loc="lower center")
+    axis.set_ylim(-1.15 * recording.limits.current, 1.75 * recording.limits.current)
+    thin_legend(axis, columns=4, loc="upper center")

@@ -89,4 +89,4 @@ def _about(ground: Ground, reach: float) -> Ground:
     middle = len(ground.heights) // 2
     cells = min(middle, int(np.ceil(reach / ground.cell)))
     part = slice(middle - cells, middle + cells + 1)
-    return Ground(ground.heights[part, part].copy(), ground.cell)
+    return ground._replace(heights=ground.heights[part, part].copy())

@@ -20,9 +20,11 @@ from tensegym.structure.faces import Faces, hull_faces
 SHAPES: dict[str, tuple[str | int, ...]] = {
     "times": ("t",), "poses": ("t", "b", 7), "bends": ("t", "p"), "tensions": ("t", "c"), "commands": ("t", "w"),
     "angles": ("t", "w"), "currents": ("t", "w"), "torques": ("t", "w"), "directions": ("t", 2), "places": ("t", 2),
-    "faces": ("t",), "path": ("k", 2), "boxes": ("x", 10), "gravity": (3,), "heights": ("y", "y"),
+    "faces": ("t",), "path": ("k", 2), "gravity": (3,), "heights": ("y", "y"), "boxes": ("x", 10),
 }  # fmt: skip
 """Of each array its axes: t times, b bodies, p pins, c cables, w drives; what is over time has t first."""
+
+_OF_GROUND = ("heights", "boxes")
 
 
 class Limits(NamedTuple):
@@ -69,10 +71,8 @@ class Recording:
     """(t,) index of the face it stands on, -1 where that is not known."""
     path: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
     """(k, 2) points of the path it is to follow [m]."""
-    boxes: FloatArray = field(default_factory=lambda: np.zeros((0, 10)))
-    """(x, 10) obstacles: centre [m], half sides [m], quaternion xyzw."""
     ground: Ground | None = FLAT
-    """The plane z = 0, bumps about the origin, or none."""
+    """The plane z = 0 or bumps about the origin, with boxes on it; or none."""
     gravity: FloatArray = field(default_factory=lambda: np.array([0.0, 0.0, -9.81]))
     """(3,) [m/s^2]; on a slope it leans, since z = 0 is the slope's plane."""
     title: str = ""
@@ -95,15 +95,15 @@ class Recording:
                 raise InputError(f"{what}: {name} has shape {array.shape}, not {wanted}")
             if name not in ("directions", "places") and not np.isfinite(array).all():
                 raise InputError(f"{what}: {name} has an entry that is no finite number")
-            if name != "heights":
+            if name not in _OF_GROUND:
                 frozen(array)
         if not len(self.times) or not (np.diff(self.times) > 0).all():
             raise InputError(f"{what} needs one time or more, each after the one before")
 
     def arrays(self) -> dict[str, FloatArray | IntArray]:
-        """All arrays by their names in SHAPES; heights are the ground's."""
-        found = {name: getattr(self, name) for name in SHAPES if name != "heights"}
-        return found | {"heights": self.ground.heights if self.ground else FLAT.heights}
+        """All arrays by their names in SHAPES; heights and boxes are the ground's."""
+        found = {name: getattr(self, name) for name in SHAPES if name not in _OF_GROUND}
+        return found | {name: getattr(self.ground or FLAT, name) for name in _OF_GROUND}
 
     @cached_property
     def model(self) -> Model:

@@ -20,7 +20,7 @@ import numpy as np
 from tensegym.design.design_file import design_from_dict, design_to_dict
 from tensegym.errors import InputError
 from tensegym.files import VERSION, check_file, without_version, write_text
-from tensegym.physics.terrain import FLAT, Ground
+from tensegym.physics.terrain import Ground
 from tensegym.tables import as_number, as_text, in_file, mapping, parse_json, read_text
 
 from .recording import SHAPES, Recording
@@ -93,10 +93,10 @@ def unpack(packed: bytes) -> Recording:
     header = without_version(mapping(parse_json(data[4:size].decode("utf-8", "replace"), "header", InputError),
                                      "header", InputError), "the replay")  # fmt: skip
     arrays = _arrays(mapping(header.get("arrays"), "arrays", InputError), data[size:])
-    heights, cell = arrays.pop("heights"), header.get("ground")
-    ground = None if cell is None else FLAT
-    if len(heights):
-        ground = Ground(heights, as_number(cell, "ground", InputError, "the spacing of its grid in m"))
+    heights, boxes, cell = arrays.pop("heights"), arrays.pop("boxes"), header.get("ground")
+    ground = None
+    if cell is not None:
+        ground = Ground(heights, as_number(cell, "ground", InputError, "the spacing of its grid in m"), boxes)
     faces = arrays.pop("faces").astype(np.int64)
     return Recording(
         design_from_dict(mapping(header.get("design"), "design", InputError)), **arrays, faces=faces, ground=ground,

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
+from tensegym.physics.box import CENTRE, HALF, TURN
 
 from .sight import Sight
 
@@ -45,13 +46,13 @@ def grid_lines(sight: Sight) -> tuple[FloatArray, FloatArray]:
 def box_patches(sight: Sight, colour: tuple[int, int, int]) -> tuple[FloatArray, FloatArray]:
     """Corners (k, 4, 3) [m] of the patches that the boxes' faces are cut into, and their colours (k, 3)."""
     patches, colours = [np.zeros((0, 4, 3))], [np.zeros((0, 3))]
-    for box in getattr(sight.ground, "boxes", ()):
-        turn = Rotation.from_quat(box[6:])
+    for box in sight.ground.boxes if sight.ground is not None else ():
+        turn = Rotation.from_quat(box[TURN])
         for axis in range(3):
             for sign in (-1, 1):
-                face = _face(box[3:6], axis, sign, _PATCH * sight.length)
+                face = _face(box[HALF], axis, sign, _PATCH * sight.length)
                 light = 0.82 + 0.18 * float(turn.apply(sign * np.eye(3)[axis]) @ sight.up)
-                patches.append(box[:3] + turn.apply(face.reshape(-1, 3)).reshape(-1, 4, 3))
+                patches.append(box[CENTRE] + turn.apply(face.reshape(-1, 3)).reshape(-1, 4, 3))
                 colours.append(np.tile(light * np.array(colour), (len(face), 1)))
     return np.concatenate(patches), np.concatenate(colours)
 

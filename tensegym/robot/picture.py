@@ -30,7 +30,7 @@ class Camera:
         right /= np.linalg.norm(right)
         self._axes = np.stack([right, np.cross(right, back), back])  # to the right, down, and towards the camera
         self._target = np.array([*sight.centre[:2], 0.35 * sight.length])
-        if sight.ground is None or len(getattr(sight.ground, "boxes", ())):
+        if sight.ground is None or len(sight.ground.boxes):
             self._target[2] = sight.centre[2]
         self._distance = 2.9 * sight.length
         self._middle = np.array([width / 2, height / 2])

@@ -58,6 +58,8 @@ class Episode(Uncopied):
         """Why the episode is over; None while it goes on."""
         self.diverged = False
         self.gait: GaitMetrics = NO_GAIT
+        self.bearing: Bearing
+        """As the controller is told it now."""
         self.drives = DriveMeter(robot)
         self.ways: list[float] = [0.0]
         """Made along what was wanted since the start [rod lengths], one entry a control step."""
@@ -66,10 +68,10 @@ class Episode(Uncopied):
             self.reading: Reading = read(robot)
         except SimulationError as error:
             self.goal = Heading.at(self.start.direction)
+            self.bearing = self.goal.bearing(robot)
             self._fail(f"while it settled: {error}")
             return
-        self.bearing: Bearing = self.goal.bearing(robot)
-        """As the controller is told it now."""
+        self.bearing = self.goal.bearing(robot)
         self.faults: Faults | None = None
         if task.disturb.on:
             own = np.random.default_rng(rng.integers(2**63))

@@ -98,12 +98,23 @@ function roundSteps(low, high, count) { // about so many round numbers
   return found;
 }
 
+function speeds(robot) { // along the ground, over a tenth of a second to either side
+  const { times } = robot, places = Array.from(times, (_, row) => robot.centreAt(row));
+  let a = 0, b = 0;
+  return Float64Array.from(times, (t) => {
+    while (times[a] < t - 0.1) a++;
+    while (b < times.length - 1 && times[b] < t + 0.1) b++;
+    return times[b] > times[a] ? Math.hypot(places[b][0] - places[a][0], places[b][1] - places[a][1]) / (times[b] - times[a]) : 0;
+  });
+}
+
 function makePlots(parent, recording, robot, seek) {
   const { arrays, scenery } = recording, { colours, limits } = scenery, { driven } = scenery.cables;
   const column = (name, c) => Float64Array.from(robot.times, (_, row) => arrays[name][row * arrays[name].width + c]);
   const drives = Array.from({ length: arrays.angles.width }, (_, d) => d);
-  const each = (name, shift = 0, scale = 1, dash) => drives.map((d) => ({
-    values: column(name, d + shift).map((v) => v * scale), colour: colours[d % colours.length], dash }));
+  const each = (name, dash, shift = 0) => drives.map((d) => ({
+    values: column(name, d + shift), colour: colours[d % colours.length], dash }));
+  const pins = Array.from({ length: arrays.bends.width }, (_, p) => p);
   const rest = Array.from({ length: arrays.tensions.width }, (_, c) => c).filter((c) => c < driven[0] || c >= driven[1]);
   const band = [Math.min, Math.max].map((pick) => Float64Array.from(robot.times, (_, row) =>
     rest.reduce((m, c) => pick(m, arrays.tensions[row * arrays.tensions.width + c]), pick === Math.min ? Infinity : -Infinity)));
@@ -120,9 +131,10 @@ function makePlots(parent, recording, robot, seek) {
   legend.append(more);
   parent.append(legend);
   return [
-    { name: "Cable tension", unit: "N", lines: each("tensions", driven[0]), band: rest.length ? band : null, limits: [limits.tension] },
+    { name: "Cable tension", unit: "N", lines: each("tensions", undefined, driven[0]), band: rest.length ? band : null, limits: [limits.tension] },
     { name: "Drive current", unit: "A", lines: each("currents"), limits: [limits.current, -limits.current] },
-    { name: "Load torque at the spool", unit: "mN m", lines: each("torques", 0, 1e3), limits: [1e3 * limits.torque] },
-    { name: "Spool angle (dashed: commanded)", unit: "rad", lines: [...each("commands", 0, 1, [4, 3]), ...each("angles")] },
+    { name: "Spool angle (dashed: commanded)", unit: "rad", lines: [...each("commands", [4, 3]), ...each("angles")] },
+    ...(pins.length ? [{ name: "Bend of the split rods", unit: "rad", lines: pins.map((p) => ({ values: column("bends", p), colour: colours[p % colours.length] })) }] : []),
+    { name: "Speed of the centre of mass", unit: "m/s", lines: [{ values: speeds(robot), colour: "#111" }] },
   ].map((what) => new Plot(parent, robot, what, seek));
 }

@@ -157,29 +157,36 @@ class View {
     seen.forEach((p, k) => (k ? this.pen.lineTo(p[0], p[1]) : this.pen.moveTo(p[0], p[1])));
     this.pen.closePath();
     this.pen.fill();
+    this.pen.strokeStyle = colour; // else a hairline of background is left between two patches
+    this.pen.lineWidth = 0.7;
+    this.pen.stroke();
   }
 
   addBoxes(items) {
     const { boxes } = this.recording.arrays;
     for (let k = 0; k < boxes.length; k += 10)
-      this.addBox(items, boxes.subarray(k, k + 7), Array.from(boxes.subarray(k + 7, k + 10)), [0.62, 0.66, 0.7, 1]);
+      this.addBox(items, [...boxes.subarray(k, k + 3), ...boxes.subarray(k + 6, k + 10)],
+                  Array.from(boxes.subarray(k + 3, k + 6), (half) => 2 * half), [0.69, 0.72, 0.75, 1]);
   }
 
   addBox(items, pose, sides, rgba) { // its faces, each shaded by how far up it looks
     for (let axis = 0; axis < 3; axis++)
       for (const sign of [-1, 1]) {
         const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-        const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([a, b]) => {
+        const side = 0.35 * this.robot.scenery.length, at = (a, b) => {
           const p = [0, 0, 0];
-          p[axis] = sign * sides[axis] / 2; p[u] = a * sides[u] / 2; p[v] = b * sides[v] / 2;
+          p[axis] = sign * sides[axis] / 2; p[u] = (a - 0.5) * sides[u]; p[v] = (b - 0.5) * sides[v];
           return turned(pose, p);
-        });
-        const middle = corners.reduce((s, c) => s.map((x, k) => x + c[k] / 4), [0, 0, 0]);
-        const seen = this.project(middle);
-        if (!seen) continue;
-        const out = normal(middle.map((x, k) => x - pose[k]));
-        const colour = shade(rgba, 0.75 + 0.25 * dot(out, this.up));
-        items.push({ depth: seen[2], paint: () => this.polygon(corners, colour) });
+        };
+        const out = [0, 1, 2].map((k) => sign * (turned(pose, UNIT[axis])[k] - pose[k]));
+        const colour = shade(rgba, 0.82 + 0.18 * dot(out, this.up));
+        const n = Math.min(24, Math.ceil(sides[u] / side)), m = Math.min(24, Math.ceil(sides[v] / side));
+        for (let i = 0; i < n; i++)
+          for (let j = 0; j < m; j++) { // short patches, so that they are painted in the right order
+            const seen = this.project(at((i + 0.5) / n, (j + 0.5) / m));
+            const corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(([a, b]) => at(a / n, b / m));
+            if (seen) items.push({ depth: seen[2], paint: () => this.polygon(corners, colour) });
+          }
       }
   }
 
@@ -209,10 +216,10 @@ class View {
   }
 
   addPieces(items, from, to, paint) {
-    const at = (k) => from.map((x, i) => x + (to[i] - x) * k / PIECES);
-    for (let k = 0; k < PIECES; k++) {
+    const at = (k) => from.map((x, i) => x + (to[i] - x) * Math.min(1, k / PIECES));
+    for (let k = 0; k < PIECES; k++) { // each a little into the next, so that no seam is seen
       const seen = this.project(at(k + 0.5));
-      if (seen) items.push({ depth: seen[2], paint: () => paint(at(k), at(k + 1)) });
+      if (seen) items.push({ depth: seen[2], paint: () => paint(at(k), at(k + 1.05)) });
     }
   }
 
@@ -221,8 +228,10 @@ class View {
     this.addPieces(items, from, to, (p, q) => {
       const seen = this.project(p);
       if (!seen) return;
+      this.pen.lineCap = "butt";
       this.line(p, q, shade(rgba, 0.62), wide(seen));
       this.line(p, q, shade(rgba, 1.05), 0.55 * wide(seen));
+      this.pen.lineCap = "round";
     });
     if (this.recording.ground !== null) {
       const down = (p) => this.onGround(p[0], p[1]);
@@ -270,6 +279,7 @@ class View {
   }
 }
 
+const UNIT = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const normal = (a) => { const n = Math.hypot(...a) || 1; return a.map((x) => x / n); };
