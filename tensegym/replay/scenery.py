@@ -27,5 +27,5 @@ def scenery(recording: Recording) -> dict[str, Any]:
         "nodes": {"bodies": model.node_bodies.tolist(), "points": np.round(model.node_points, 6).tolist()},
         "faces": recording.triangles.tolist(),
         "colours": list(COLOURS), "full_scale": FULL_SCALE,
-        "tension_colours": [tension_colour(FULL_SCALE * share) for share in np.linspace(1e-6, 1, 13)],
+        "tension_colours": [tension_colour(FULL_SCALE * share) for share in np.linspace(1e-3, 1, 13)],
     }  # fmt: skip

@@ -60,7 +60,7 @@ def _draw_key(image: object, pen: object, font: object) -> None:
     assert isinstance(image, Image.Image) and isinstance(pen, ImageDraw.ImageDraw)
     wide, high = image.width // 5, max(6, image.height // 60)
     left, top = image.width - wide - image.width // 6, image.height - 3 * high
-    bar = tension_colours(np.linspace(1e-6, FULL_SCALE, wide)).astype(np.uint8)
+    bar = tension_colours(np.linspace(0.1, FULL_SCALE, wide)).astype(np.uint8)
     image.paste(Image.fromarray(np.tile(bar, (high, 1, 1))), (left, top))
     pen.text((left - 8, top + high / 2), "tension  0", "#111111", font, anchor="rm")  # type: ignore[arg-type]
     pen.text((left + wide + 8, top + high / 2), f"{FULL_SCALE:g} N", "#111111", font, anchor="lm")  # type: ignore[arg-type]

@@ -10,7 +10,7 @@ from tensegym.design.solids import Solid, middles
 
 from .ground_lines import box_patches, grid_lines, on_ground
 from .painting import COLOUR, ITEM_SIZE, KIND, OPACITY, PATCH, POINTS, ROUND, paint
-from .sight import Sight, tension_colours
+from .sight import SLACK_BELOW, Sight, tension_colours
 
 PIECES = 8  # of a rod or a cable: short ones are painted in the right order
 _PAPER = 248.0
@@ -93,7 +93,8 @@ class Canvas:
         """(height, width, 3) the picture."""
         image = np.full((height, width, 3), _PAPER)
         items, depths = (np.concatenate(part) for part in zip(*self._above, strict=True))
-        paint(image, np.concatenate([*self._below, items[np.argsort(-depths, kind="stable")]]))
+        order = np.argsort(-depths.round(6), kind="stable")  # what is level stays as it came, whatever the last bit
+        paint(image, np.concatenate([*self._below, items[order]]))
         return image.round().astype(np.uint8)
 
 
@@ -108,7 +109,7 @@ def picture(sight: Sight, width: int = 480, height: int = 360, yaw: float = 0.8)
         _draw_goal(canvas, sight, unit)
         canvas.patches(*box_patches(sight, _BLOCK))
     _draw_solids(canvas, sight, unit)
-    half = np.where(sight.tensions > 0, 1.1, 0.6)
+    half = np.where(sight.tensions > SLACK_BELOW, 1.1, 0.6)
     half[sight.driven] += 0.6 * (half[sight.driven] > 1)
     colours = np.repeat(tension_colours(sight.tensions), PIECES, axis=0)
     canvas.strokes(_cut(sight.cables), colours, np.repeat(half * unit, PIECES))

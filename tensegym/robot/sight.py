@@ -15,7 +15,7 @@ from tensegym.physics.terrain import FLAT, Ground
 from .robot import TensegrityRobot
 
 FULL_SCALE = 60.0  # N, where the colours of tensions end
-SLACK = (165, 170, 175)
+SLACK, SLACK_BELOW = (165, 170, 175), 0.01  # N: at rest the last bit decides whether a wound cable pulls
 # Matplotlib's plasma up to where it grows too light for a white page: even steps in print, and for the colour-blind
 _TAUT = np.array([[13, 8, 135], [126, 3, 168], [204, 71, 120], [248, 149, 64]], dtype=float)
 
@@ -74,7 +74,7 @@ def sight_of(robot: TensegrityRobot, direction: FloatArray | None = None) -> Sig
 
 def tension_colour(tension: float) -> tuple[int, int, int]:
     """Red, green, blue of a cable: grey when slack, else from blue over purple to orange at FULL_SCALE [N]."""
-    if not tension > 0:
+    if not tension > SLACK_BELOW:
         return SLACK
     red, green, blue = tension_colours(np.array([tension]))[0].astype(int).tolist()
     return red, green, blue
@@ -84,4 +84,4 @@ def tension_colours(tensions: FloatArray) -> FloatArray:
     """(c, 3) the same of many, 0 to 255."""
     stops = np.linspace(0, FULL_SCALE, len(_TAUT))
     colours = np.column_stack([np.interp(tensions, stops, part) for part in _TAUT.T])
-    return np.where((tensions > 0)[:, None], colours.round(), SLACK)
+    return np.where((tensions > SLACK_BELOW)[:, None], colours.round(), SLACK)

@@ -139,7 +139,7 @@ def test_evaluate_writes_metrics_picture_video_and_table(tiny_run, tmp_path, cli
     picture = imageio.imread(out / "gait.png")
     assert picture.shape[0] > 500 and picture.std() > 10
     frames = imageio.imread(out / "roll.mp4", plugin="FFMPEG")
-    assert frames.shape[0] == pytest.approx(40, abs=2)  # 2 s at 20 a second
+    assert frames.shape[0] == pytest.approx(50, abs=2)  # 2 s at 25 a second
     assert np.abs(frames[0].astype(float) - frames[-1]).max() > 50
 
 

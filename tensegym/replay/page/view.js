@@ -208,7 +208,7 @@ class View {
     bodies.forEach(([a, b], c) => {
       const from = robot.point(a, points[c].slice(0, 3)), to = robot.point(b, points[c].slice(3));
       const tension = robot.value("tensions", c), wound = c >= driven[0] && c < driven[1];
-      const pixels = tension > 0 ? (wound ? 3.5 : 2) : 1;
+      const pixels = tension > 0.01 ? (wound ? 3.5 : 2) : 1;
       this.addPieces(items, from, to, (p, q) => this.line(p, q, tensionColour(scenery, tension), pixels));
     });
     const centre = robot.centre(), seen = this.project(centre);
@@ -295,7 +295,7 @@ function shade(rgba, light) {
 }
 
 function tensionColour(scenery, tension) { // grey where slack
-  if (!(tension > 0)) return "rgb(165, 170, 175)";
+  if (!(tension > 0.01)) return "rgb(165, 170, 175)";
   const stops = scenery.tension_colours, at = Math.min(1, tension / scenery.full_scale) * (stops.length - 1);
   const i = Math.min(stops.length - 2, Math.floor(at)), s = at - i;
   return `rgb(${stops[i].map((x, k) => Math.round((1 - s) * x + s * stops[i + 1][k])).join(", ")})`;
