@@ -4,7 +4,7 @@
 
 The solid: hexahedra of 20 nodes with 8 integration points, 32 by 16 and one through the thickness, linear elastic and
 free of stress about the shape that it has, flat or bent to an arc; one end held, the other moved as a rigid body. The
-arc is what a pure moment makes of a leaf. Checks of it: with nu = 0 the leaf turns by E I / L, and at nu = 0.38 hindered
+arc is what a pure moment makes of a leaf. Checks: with nu = 0 the leaf turns by E I / L, and at nu = 0.38 hindered
 anticlastic curvature makes one that is as wide as long stiffer, by 15 % in another solid code.
 """
 
