@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[1]
 SHELVES = (  # each may import from itself and from those before it
     "errors", "arrays", "files", "compiled", "tables", "report", "plotting", "progress", "processes",
     "flexure", "structure", "structures", "design", "physics", "engine", "bullet", "mujoco", "robot", "flexible",
-    "control", "tasks", "envs", "urdf", "replay", "train", "search", "compare", "validation", "tensegym", "cli",
+    "control", "tasks", "envs", "urdf", "replay", "train", "search", "compare", "validation", "view", "tensegym", "cli",
     "__main__",
 )  # fmt: skip
 ENGINES = {"pybullet": "bullet", "pybullet_data": "bullet", "mujoco": "mujoco"}  # and the one shelf that imports each
@@ -125,7 +125,7 @@ def test_only_an_engines_shelf_touches_it_and_its_memory():
 
 HOMES = {
     "matplotlib": {"plotting"}, "optuna": {"search"}, "ray": {"search"}, "torch": {"control", "train"},
-    "tqdm": {"progress"}, "tyro": {"cli", "train"},
+    "tqdm": {"progress"}, "tyro": {"cli", "train"}, "viser": {"view"},
 }  # fmt: skip
 
 

@@ -26,6 +26,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "export": ("tensegym.cli.export:Export", "a design as MJCF, with tendons and winches, or as URDF"),
     "compare": ("tensegym.cli.compare:Compare", "PyBullet and MuJoCo side by side: flight, rest, steps, a policy"),
     "validate": ("tensegym.cli.validate:Validate", "physics against closed forms: expected, measured, tolerance"),
+    "view": ("tensegym.cli.view:View", "the robot in a browser: look, drive, click a place to go to"),
     "train": ("tensegym.cli.train:Train", "train a rolling policy with PPO; resumable"),
     "evaluate": ("tensegym.cli.evaluate:Evaluate", "judge a policy and the baselines over many seeds"),
     "policy": ("tensegym.cli.policy:COMMANDS", "a policy for a robot's own computer: export"),
@@ -33,7 +34,8 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "fields": ("tensegym.cli.fields:Fields", "what a design, task, training or other file may hold: units, ranges"),
     "flexure": ("tensegym.cli.flexure:COMMANDS", "flexible joints: table, curves, fit, track, solve"),
 }
-EXTRAS = {"optuna": "search", "cmaes": "search", "sqlalchemy": "search", "ray": "cluster", "onnx": "onnx"}
+EXTRAS = {"optuna": "search", "cmaes": "search", "sqlalchemy": "search", "ray": "cluster", "onnx": "onnx",
+          "viser": "view", "trimesh": "view"}  # fmt: skip
 
 
 def usage(commands: dict[str, tuple[str, str]], program: str) -> str:

@@ -55,6 +55,28 @@ class Neighbour(Heading):
     """Index of the face to arrive on."""
 
 
+@dataclass(frozen=True)
+class Place(Goal):
+    """A place to go to."""
+
+    at: FloatArray
+    """(2,) [m]."""
+    stay: bool = True
+    """Whether to stop there."""
+    fallback: float = 0.0
+    """Angle of the way to go at the very place, from the world's x axis [rad]."""
+
+    def bearing(self, robot: TensegrityRobot) -> Bearing:
+        """As `Goal` has it."""
+        to_go = self.at - robot.centre_of_mass_in_world()[:2]
+        distance = float(np.linalg.norm(to_go))
+        return Bearing(to_go / distance if distance > 1e-9 else unit(self.fallback), distance, self.stay)
+
+    def made(self, bearing: Bearing, before: FloatArray, after: FloatArray) -> float:
+        """As `Goal` has it: by how much nearer it is."""
+        return float(np.linalg.norm(self.at - before) - np.linalg.norm(self.at - after))
+
+
 def unit(angle: float) -> FloatArray:
     """(2,) unit vector at an angle from the world's x axis [rad]."""
     return np.array([math.cos(angle), math.sin(angle)])

@@ -6,13 +6,11 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-import numpy as np
-
 from tensegym.arrays import FloatArray
 from tensegym.control.bearing import Bearing
 from tensegym.robot.robot import TensegrityRobot
 
-from .goal import Goal, unit
+from .goal import Goal, Place, unit
 
 
 class Target(NamedTuple):
@@ -63,23 +61,22 @@ class Targets(Goal):
     def _next(self, start: FloatArray) -> None:
         """Another target; a place is measured from ``start`` (2,)."""
         self.target = target = next(self._targets)
-        self._place = start + target.distance * unit(target.angle) if math.isfinite(target.distance) else None
+        self._place: Place | None = None
+        if math.isfinite(target.distance):
+            self._place = Place(start + target.distance * unit(target.angle), target.seconds > 0, target.angle)
         self._seconds, self._way, self._reached_at = 0.0, 0.0, math.inf
 
     def bearing(self, robot: TensegrityRobot) -> Bearing:
         """As `Goal` has it."""
-        angle = self.target.angle + self.target.drift * self._seconds
-        if self._place is None:
-            return Bearing(unit(angle))
-        to_go = self._place - _centre(robot)
-        distance = float(np.linalg.norm(to_go))
-        return Bearing(to_go / distance if distance > 1e-9 else unit(angle), distance, self.target.seconds > 0)
+        if self._place is not None:
+            return self._place.bearing(robot)
+        return Bearing(unit(self.target.angle + self.target.drift * self._seconds))
 
     def made(self, bearing: Bearing, before: FloatArray, after: FloatArray) -> float:
         """As `Goal` has it; towards a place, by how much nearer it is."""
         if self._place is None:
             return super().made(bearing, before, after)
-        return float(np.linalg.norm(self._place - before) - np.linalg.norm(self._place - after))
+        return self._place.made(bearing, before, after)
 
     def update(self, robot: TensegrityRobot, way: float, seconds: float) -> None:
         """As `Goal` has it."""
@@ -90,7 +87,7 @@ class Targets(Goal):
             begun = self._reached(self.bearing(robot), seconds)
         if self._seconds - begun >= self.target.seconds - 1e-9:
             self.legs.append(Leg(self._place is not None, self._seconds, self._way))
-            self._next(_centre(robot) if self._place is None else self._place)
+            self._next(_centre(robot) if self._place is None else self._place.at)
 
     def _reached(self, bearing: Bearing, seconds: float) -> float:
         """When the place was reached, inf before; counts it, and the time of the stay there."""
