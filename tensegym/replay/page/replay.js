@@ -64,6 +64,7 @@ async function start() {
   const layOut = () => { plots.forEach((plot) => plot.layOut()); draw(); };
   window.addEventListener("resize", layOut);
   layOut();
+  window.replay = { recording, robot, view, seek, play }; // for the console
   document.body.dataset.ready = "yes";
 }
 
