@@ -55,6 +55,8 @@ class TrainConfig(Checked, error=InputError):
     target_kl: float | None = bounded(0, 10, None, "", "divergence at which an update stops", open_low=True)
     hidden: tuple[int, ...] = bounded(1, 10**5, (256, 256), "", "widths of the hidden layers")
     log_std_init: float = bounded(-10, 3, 0.0, "", "logarithm of the actions' first standard deviation", open_low=True)
+    start_std: float | None = bounded(0, 10, None, "", "the same where there is a start, in place of that policy's own",
+                                      open_low=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -69,7 +69,7 @@ def train(config: TrainConfig, out: Path, state: TrainState) -> int:
             read_training(model, env, checkpoint_folder(out, state.steps), state.updates)
             model.num_timesteps = state.steps
         elif config.start is not None:
-            begin_from(config.start, model, env)
+            begin_from(config.start, model, env, config.start_std)
         go_back(out, state)
         model.set_logger(configure(str(out / "tensorboard"), ["tensorboard", "csv"]))
         metric = workers.get_attr("task")[0].goal.metric

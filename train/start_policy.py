@@ -5,6 +5,7 @@ What the new observation has behind the old one's end begins with weights of zer
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import torch
@@ -33,8 +34,11 @@ def check_start(config: TrainConfig, observed: Any, driven: Any) -> None:
         )
 
 
-def begin_from(start: str, model: PPO, env: VecNormalize) -> None:
-    """Give a fresh model the networks of a policy, and its environments that policy's running statistics."""
+def begin_from(start: str, model: PPO, env: VecNormalize, std: float | None = None) -> None:
+    """Give a fresh model the networks of a policy, and its environments that policy's running statistics.
+
+    std: of the actions, in place of the policy's, which may have settled on its ways.
+    """
     saved = read_policy(policy_folder(start))
     new = model.policy.state_dict()
     for name, value in new.items():
@@ -43,6 +47,8 @@ def begin_from(start: str, model: PPO, env: VecNormalize) -> None:
         known = torch.from_numpy(saved.weights[name])
         value.zero_()
         value[tuple(slice(n) for n in known.shape)] = known
+    if std is not None:
+        new["log_std"].fill_(math.log(std))
     model.policy.load_state_dict(new)
     put_statistics(env.obs_rms, saved.observations)
     put_statistics(env.ret_rms, saved.returns)

@@ -242,8 +242,9 @@ def started(tmp_path, tiny_config, start, **changes):
 def test_a_training_begins_as_the_policy_it_starts_from(tmp_path, tiny_config, tiny_run, cli):
     # at a vanishing learning rate it also ends as that policy, and sees nothing of the design
     config = started(tmp_path, tiny_config, tiny_run, steps=STEPS, learning_rate=1e-12, final_learning_rate=1e-12,
-                     env={"vary": VARY})  # fmt: skip
+                     start_std=0.25, env={"vary": VARY})  # fmt: skip
     assert cli("train", "--config", config, "--out", tmp_path / "run")[0] == 0
+    np.testing.assert_allclose(np.exp(read_policy(tmp_path / "run").weights["log_std"]), 0.25, rtol=1e-5)
     before, after = load_policy(tiny_run), load_policy(tmp_path / "run")
     with RollingEnv(**yaml.safe_load(config.read_text())["env"]) as env:
         observation, _ = env.reset(seed=1)
