@@ -27,6 +27,7 @@ from tqdm import tqdm
 from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import as_design, design_to_dict
 from tensegym.design.variation import parse_variation
+from tensegym.plotting import COLOURS, new_figure, save, thin_legend
 from tensegym.processes import Pool
 from tensegym.report import table
 from tensegym.search.confirm import FIRST_SEED, TIME_STEP
@@ -73,7 +74,9 @@ class Ranking:
                     scores.add(f"{self.policy} {i}", self._score(designs[i], asked, engine))
         ours = np.array([scores.kept[f"{self.policy} {i}"]["mean"] for i in range(len(designs))])
         theirs = np.array([scores.kept[f"search {i}"]["mean"] for i in range(len(designs))])
-        _draw(ours, theirs, self.out / "ranking.png")
+        errors = [np.array([scores.kept[f"{who} {i}"]["error"] for i in range(len(designs))])
+                  for who in (self.policy, "search")]  # fmt: skip
+        _draw(ours, theirs, (errors[0], errors[1]), self.out / "ranking.png")
         return _told(designs, ours, theirs, scores.kept, self.policy)
 
     def _searched(self, design: RobotDesign, folder: Path, engine: Pool) -> dict[str, float]:
@@ -159,23 +162,20 @@ def _told(
     )
 
 
-def _draw(ours: np.ndarray, theirs: np.ndarray, out: Path) -> None:
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(5.5, 5))
-    axes.plot(theirs, ours, "o")
-    for i, place in enumerate(zip(theirs, ours, strict=True)):
-        axes.annotate(str(i), place, xytext=(4, 3), textcoords="offset points", fontsize=7)
-    ends = [min(ours.min(), theirs.min()), max(ours.max(), theirs.max())]
-    axes.plot(ends, ends, color="grey", lw=0.8)
-    axes.set(xlabel="best generator of a search for the design, mean speed [L/s]",
-             ylabel="policy conditioned on the design, mean speed [L/s]")  # fmt: skip
-    axes.grid(alpha=0.3)
-    figure.tight_layout()
-    figure.savefig(out, dpi=110)
+def _draw(ours: np.ndarray, theirs: np.ndarray, errors: tuple[np.ndarray, np.ndarray], out: Path) -> None:
+    """Both scores of each robot with their standard errors; named are the best one of either."""
+    figure, axes = new_figure(size=(6, 5.5))
+    axes.errorbar(theirs, ours, xerr=errors[1], yerr=errors[0], fmt="o", ms=4, color=COLOURS[0], ecolor="0.7", lw=1,
+                  label="a robot, and standard errors")  # fmt: skip
+    ends = [0.0, float(max(ours.max(), theirs.max()))]
+    axes.plot(ends, ends, color="0.4", lw=1, ls="--", label="equally fast")
+    for best in {int(ours.argmax()), int(theirs.argmax())}:
+        axes.annotate(f"robot {best}", (theirs[best], ours[best]), xytext=(-8, -14), textcoords="offset points",
+                      ha="right")  # fmt: skip
+    axes.set(xlabel="best generator of a search for the robot: mean speed [rod lengths/s]",
+             ylabel="policy conditioned on the robot: mean speed [rod lengths/s]")  # fmt: skip
+    thin_legend(axes, loc="lower right")
+    save(figure, out)
 
 
 if __name__ == "__main__":

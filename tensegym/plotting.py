@@ -9,6 +9,7 @@ from tensegym.files import replace_path
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 """Told apart by the colour-blind too: Okabe and Ito 2008."""
+MARKERS = ("o", "^", "s", "D", "v", "P", "X")
 
 
 def require_matplotlib() -> None:

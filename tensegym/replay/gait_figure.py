@@ -69,28 +69,29 @@ def _draw_speeds(axis: Any, speeds_lps: Sequence[float]) -> None:
 
 
 def draw_tensions(axis: Any, recording: Recording) -> None:
-    """Of the wound cables over time, the elastic ones as a band, the drives' limit."""
+    """Of the wound cables over time in their drives' colours, the elastic ones as a band, the drives' limit."""
     times, driven = recording.times, recording.model.driven
     elastic = np.delete(recording.tensions, np.arange(driven.start, driven.stop), axis=1)
     if elastic.size:
         low, high = elastic.min(axis=1), elastic.max(axis=1)
-        axis.fill_between(times, low, high, color="0.85", lw=0, label="elastic cables")
+        axis.fill_between(times, low, high, color="0.85", lw=0, label="elastic cables, least to most")
     for d, values in enumerate(recording.tensions[:, driven].T):
-        axis.plot(times, values, color=COLOURS[d % len(COLOURS)], lw=1, label=f"wound by drive {d + 1}")
+        axis.plot(times, values, color=COLOURS[d % len(COLOURS)], lw=1)
     limit = recording.limits.tension
     axis.axhline(limit, color="k", ls="--", lw=1, label="drive's limit")
-    axis.set(xlabel="time [s]", ylabel="tension [N]", title="Cables", xlim=(times[0], times[-1]))
-    axis.set_ylim(min(0.0, float(recording.tensions.min())), 1.45 * max(limit, float(recording.tensions.max())))
-    thin_legend(axis, columns=3, loc="upper center")
+    axis.set(xlabel="time [s]", ylabel="tension [N]", xlim=(times[0], times[-1]),
+             title="Cables, in the colours of the drives that wind them")  # fmt: skip
+    axis.set_ylim(min(0.0, float(recording.tensions.min())), 1.1 * max(limit, float(recording.tensions.max())))
+    thin_legend(axis, columns=2)
 
 
-def draw_currents(axis: Any, recording: Recording) -> None:
-    """Of the drives over time, and their limits."""
+def draw_currents(axis: Any, recording: Recording, names: bool = True) -> None:
+    """Of the drives over time, and their limits; with the drives' names and colours."""
     times = recording.times
     for d, values in enumerate(recording.currents.T):
-        axis.plot(times, values, color=COLOURS[d % len(COLOURS)], lw=1, label=f"drive {d + 1}")
+        axis.plot(times, values, color=COLOURS[d % len(COLOURS)], lw=1, label=f"drive {d + 1}" if names else None)
     for sign, label in ((-1, None), (1, "limits")):
         axis.axhline(sign * recording.limits.current, color="k", ls="--", lw=1, label=label)
     axis.set(xlabel="time [s]", ylabel="current [A]", title="Drives", xlim=(times[0], times[-1]))
-    axis.set_ylim(-1.15 * recording.limits.current, 1.75 * recording.limits.current)
+    axis.set_ylim(-1.15 * recording.limits.current, (1.75 if names else 1.4) * recording.limits.current)
     thin_legend(axis, columns=4, loc="upper center")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,19 +22,21 @@ PERIOD = 0.02  # s between two looks
 
 
 def record_step(robot: TensegrityRobot, tip: Tip, settle: float = 0.5) -> Recording:
-    """Run a step again and record it: the same start gives the same motion. Times are since it was reset, ``settle``
-    [s] before the pull."""
+    """Run a step again and record it: the same start gives the same motion. It stands for ``settle`` [s] first; times
+    are since the pull began."""
     names = robot.faces.names()
     recorder = Recorder(f"{robot.design.name}: from face {names[tip.from_face]} onto {names[tip.to_face]}", PERIOD)
     robot.reset(tip.from_face)
     robot.step(round(settle / robot.dt))
+    begun = robot.time
 
     def watch(robot: TensegrityRobot) -> None:
         nodes, centre = robot.node_positions_in_world(), robot.centre_of_mass_in_world()
         recorder.look(robot, face=supporting_face(robot.faces, nodes, centre))
 
     run_pull(robot, tip.pull, watch, PERIOD)
-    return recorder.recording()
+    found = recorder.recording()
+    return replace(found, times=found.times - begun)
 
 
 def draw_storyboard(recording: Recording, out: Path) -> None:
@@ -56,7 +59,7 @@ def draw_drives(recording: Recording, out: Path) -> None:
         angle.plot(recording.times, recording.angles[:, d], color=colour, lw=1.5, label=f"drive {d + 1}")
     angle.set(ylabel="spool angle [rad]", title="Drives (dashed: commanded)")
     thin_legend(angle, columns=2)
-    draw_currents(load, recording)
+    draw_currents(load, recording, names=False)
     draw_tensions(pull, recording)
     for axis in (angle, load):
         axis.set(xlabel="")

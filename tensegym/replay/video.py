@@ -45,9 +45,13 @@ def frame(
     pen, font = ImageDraw.Draw(image), ImageFont.load_default(round(height / 22))
     pen.text((12, 8), f"t = {recording.times[row]:.2f} s", "#111111", font)
     if numbers:
-        at, _ = Camera(sight, width, height, 0.8)(recording.nodes[row])
-        for n, (x, y) in enumerate(at.tolist()):
-            pen.text((x + 6, y - 6), str(n + 1), "#111111", font, anchor="ls", stroke_width=2, stroke_fill="#f8f8f8")
+        at, depth = Camera(sight, width, height, 0.8)(recording.nodes[row])
+        taken = np.zeros((0, 2))
+        for n in np.argsort(depth).tolist():  # the nearer one first; one that hides behind another is written below
+            below = bool(len(taken)) and np.abs(taken - at[n]).max(axis=1).min() < height / 24
+            pen.text(tuple(at[n] + [6, height / 24 if below else -6]), str(n + 1), "#111111", font, anchor="ls",
+                     stroke_width=2, stroke_fill="#f8f8f8")  # fmt: skip
+            taken = np.concatenate([taken, at[n][None]])
     if key:
         _draw_key(image, pen, font)
     return np.asarray(image)

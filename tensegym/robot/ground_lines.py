@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.ndimage import map_coordinates
 from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
@@ -19,10 +20,8 @@ def on_ground(sight: Sight, points: FloatArray) -> FloatArray:
     """(k, 3) points (k, 2) [m] on the ground, boxes apart."""
     found = np.column_stack([points, np.zeros(len(points))])
     if sight.ground is not None and sight.ground.rough:
-        heights = sight.ground.heights
-        middle = (len(heights) - 1) / 2
-        i, j = np.clip(np.round(points / sight.ground.cell + middle).astype(int), 0, len(heights) - 1).T
-        found[:, 2] = heights[i, j]
+        cells = points.T / sight.ground.cell + (len(sight.ground.heights) - 1) / 2
+        found[:, 2] = map_coordinates(sight.ground.heights, cells, order=1, mode="nearest")
     return found
 
 

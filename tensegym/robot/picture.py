@@ -151,10 +151,10 @@ def _draw_solids(canvas: Canvas, sight: Sight, unit: float) -> None:
     spans, colours = np.stack([at - half, at + half], axis=1), np.array([solid.colour for solid in sight.solids])
     radii, ball = np.array([solid.size[0] for solid in sight.solids]), lengths == 0
     canvas.strokes(spans[ball], 255 * colours[ball, :3], 2 * unit, opacity=colours[ball, 3], radii=radii[ball])
-    pieces = _cut(spans[~ball])
     if sight.ground is not None:
-        shadows = on_ground(sight, pieces[..., :2].reshape(-1, 2)).reshape(-1, 2, 3)
+        shadows = on_ground(sight, spans[~ball, :, :2].reshape(-1, 2)).reshape(-1, 2, 3)
         canvas.strokes(shadows, _SHADOW, 2 * unit, opacity=0.3, below=True)
+    pieces = _cut(spans[~ball])
     tints = np.repeat(255 * colours[~ball, :3], PIECES, axis=0)
     canvas.strokes(pieces, tints, 1.7 * unit, radii=np.repeat(radii[~ball], PIECES))
 

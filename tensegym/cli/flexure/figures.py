@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tensegym import plotting
 from tensegym.arrays import FloatArray
 from tensegym.errors import FlexureError
 from tensegym.flexure import fem
@@ -21,8 +22,10 @@ from tensegym.flexure.models.pseudo_rigid import planar_placement, spring_track
 from tensegym.flexure.models.stiffness_diagram import StiffnessDiagram, invert
 from tensegym.plotting import new_figure, save
 
-COLOURS = {"potential": "tab:red", "planar": "tab:green", "paper": "tab:purple", "torsion": "tab:orange"}
-STYLES = {"potential": "--", "planar": "-.", "paper": ":", "torsion": (0, (5, 3))}
+COLOURS = dict(zip(("potential", "planar", "paper", "torsion"), plotting.COLOURS[1:], strict=False))
+BLUE, RED, GREEN = plotting.COLOURS[:3]
+STYLES = {"potential": "-", "planar": "-.", "paper": ":", "torsion": "--"}
+WIDTHS = {"potential": 3.0, "planar": 2.2, "paper": 1.8, "torsion": 1.3}  # lines that coincide show inside one another
 
 
 def _panels(count: int, width: float = 5.0, height: float = 3.8) -> tuple[Any, list[Any]]:
@@ -68,7 +71,7 @@ def draw_hinges(hinges: Sequence[Hinge], path: Path, share: float = 0.8) -> None
     for axis, hinge in zip(axes, hinges, strict=True):
         rest = fem.apply_wrench(hinge, np.zeros(3), keep_nodes=True)
         _draw_shape(axis, hinge, rest.nodes[0], "0.35")
-        for sign, colour in ((1, "tab:blue"), (-1, "tab:red")):
+        for sign, colour in ((1, BLUE), (-1, RED)):
             if hinge.arm:
                 steps = sign * share * hinge.max_angle * np.arange(1, 11) / 10
                 solution = fem.rotate(hinge, steps, direction=fem.arm_direction(steps, hinge.arm), keep_nodes=True)
@@ -97,21 +100,19 @@ def draw_torque(joints: dict[str, Joint], path: Path, measured: dict[str, States
         sweep = arm_sweep(joint.hinge, joint.box.max_angle)
         sweep = sweep.pick(joint.box.holds(sweep.force))
         angle = np.degrees(sweep.theta)
-        left.plot(angle, 1e3 * sweep.moment, color="black", lw=2.5, alpha=0.35, label="FEM")
+        left.plot(angle, 1e3 * sweep.moment, color="0.75", lw=7, label="FEM")
         for key, model in joint.models.items():
             moment = model.poses(sweep.theta, sweep.force).moment
-            look = {"ls": STYLES[key], "color": COLOURS[key], "label": MODELS[key]}
+            look = {"ls": STYLES[key], "color": COLOURS[key], "lw": WIDTHS[key], "label": MODELS[key]}
             left.plot(angle, 1e3 * moment, **look)
             right.plot(angle, 1e3 * (moment - sweep.moment), **look)
         if measured and name in measured:
             points = measured[name]
-            left.plot(np.degrees(points.theta), 1e3 * points.moment, "o", ms=4, mfc="none", color="tab:blue",
+            left.plot(np.degrees(points.theta), 1e3 * points.moment, "o", ms=4, mfc="none", color=BLUE,
                       label="measured")  # fmt: skip
         title = f"{name} ({joint.hinge.material.modulus_name}){_load_of(joint.hinge)}"
         left.set(title=title, xlabel=r"angle $\theta$ [deg]", ylabel="moment about the tip [N mm]")
         right.set(title="model less FEM", xlabel=r"angle $\theta$ [deg]", ylabel="moment [N mm]")
-        for axis in (left, right):
-            axis.grid(alpha=0.3)
         left.legend(fontsize=7)
     save(figure, path)
 
@@ -122,14 +123,13 @@ def draw_drift(joints: dict[str, Joint], path: Path) -> None:
     for axis, (name, joint) in zip(axes, joints.items(), strict=True):
         assert joint.hinge is not None
         sweep = arm_sweep(joint.hinge, joint.box.max_angle)
-        for reading, label, colour in (("dx", "dx alone (Table 1)", "tab:blue"), ("F2", "F2 as printed", "tab:red")):
+        for reading, label, colour in (("dx", "dx alone (Table 1)", BLUE), ("F2", "F2 as printed", RED)):
             place = planar_placement(sweep, joint.length, reading)
             x, y = 1e3 * spring_track(sweep, joint.length, place.b).T
             for values, style, part in ((x, "-", "x"), (y, "--", "y")):
                 name_ = f"{part}, {label}: b = {place.b:.3f}"
                 axis.plot(np.degrees(sweep.theta), values, style, color=colour, label=name_)
         axis.set(title=name + _load_of(joint.hinge), xlabel=r"angle $\theta$ [deg]", ylabel="drift of the axis [mm]")
-        axis.grid(alpha=0.3)
         axis.legend(fontsize=7)
     save(figure, path)
 
@@ -146,9 +146,9 @@ def draw_stiffness(joints: dict[str, Joint], path: Path) -> None:
         sweep = arm_sweep(joint.hinge, joint.box.max_angle)
         k, _ = invert(sweep, joint.length, diagram.b)
         angle = np.degrees(sweep.theta)
-        left.plot(angle, 1e-3 * k[:, 0], color="tab:blue", label="kx")
-        left.plot(angle, 1e-3 * k[:, 1], "--", color="tab:orange", label="ky")
-        right.plot(angle, k[:, 2], color="tab:green", label="kz, inverted")
+        left.plot(angle, 1e-3 * k[:, 0], color=BLUE, label="kx")
+        left.plot(angle, 1e-3 * k[:, 1], "--", color=RED, label="ky")
+        right.plot(angle, k[:, 2], color=GREEN, label="kz, inverted")
         title = f"{name}{_load_of(joint.hinge)}, b = {diagram.b:.3f}"
         if isinstance(planar, PlanarSpring):
             title += f"; constant k over the box: kx {1e-3 * planar.kx:.3g}, ky {1e-3 * planar.ky:.3g} N/mm"
@@ -157,7 +157,6 @@ def draw_stiffness(joints: dict[str, Joint], path: Path) -> None:
         left.title.set_fontsize(9)
         right.set(xlabel=r"angle $\theta$ [deg]", ylabel="kz [N m/rad]")
         for axis in (left, right):
-            axis.grid(alpha=0.3)
             axis.legend(fontsize=8)
     save(figure, path)
 
@@ -173,6 +172,5 @@ def draw_errors(joints: dict[str, Joint], tests: dict[str, States], path: Path) 
             axis.hist(error, bins=bins, color=COLOURS[key], alpha=0.5, label=MODELS[key])
         axis.set(title=f"{name}: {len(tests[name])} states held out", xlabel="tip error [mm]", ylabel="states")
         axis.set_xscale("log")
-        axis.grid(alpha=0.3)
     axes[0].legend(fontsize=8)
     save(figure, path)
