@@ -51,7 +51,7 @@ FILES = {
                             (": tasks.disturbance.Disturbance",)),
     "controller": FileKind("what moves a robot: [controller] of a task file", "control.table"),
     "hinge": FileKind("a flexible hinge: flexure fit FILE.toml", "flexure.hinge.hinge_file"),
-    "measured": FileKind("a measured hinge: flexure fit --measured FILE.csv", "flexure.measured.measured_file"),
+    "measured": FileKind("a measured hinge: flexure fit --data FILE.csv", "flexure.measured.measured_file"),
     "flexible": FileKind("a URDF with flexible joints: load_robot", "flexible.flexure_file",
                          ("[flexure]: flexible.flexure_file.Section",)),
     "commands": FileKind("drive angles against time: simulate --commands FILE.csv", "control.commands_file"),
