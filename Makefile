@@ -6,7 +6,7 @@ STAMP := $(VENV)/.ready
 export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 
-.PHONY: help setup test fuzz lint demo train bench validate clean
+.PHONY: help setup test fuzz lint demo train bench validate docs dist clean
 
 help:
 	@echo "make demo   roll the shipped policy: demo/run.html, metrics.json, gait.png, roll.mp4"
@@ -15,6 +15,8 @@ help:
 	@echo "make lint   ruff and mypy"
 	@echo "make train  train the rolling policy from scratch: runs/rolling-s0"
 	@echo "make validate  docs/validation.md with its figures: half an hour on two cores, and goes on where it was stopped"
+	@echo "make docs   these documents as pages: build/docs/index.html"
+	@echo "make dist   wheel and source distribution: dist"
 	@echo "make bench  measured ratios: substep, environment, start-up beside their peers, flexure models against their FEM"
 
 setup: $(STAMP)
@@ -51,5 +53,16 @@ bench: $(STAMP)
 validate: $(STAMP)
 	$(BIN)/tensegym validate --page docs
 
+docs: $(STAMP)
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[docs]'
+	$(BIN)/sphinx-build -W --keep-going -q -b html docs build/docs
+	$(BIN)/python -m docs.check build/docs
+
+dist: $(STAMP)
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[docs]'
+	rm -rf dist
+	$(BIN)/python -m build --quiet
+	$(BIN)/twine check --strict dist/*
+
 clean:
-	rm -rf $(VENV) build *.egg-info demo runs
+	rm -rf $(VENV) build dist *.egg-info demo runs docs/reference docs/gallery

@@ -64,8 +64,8 @@ def draw_tip() -> None:
 def draw_step() -> None:
     """Up to which time step explicit cable forces are stable, against the stiffness of the wound cables."""
     design, stiffness = RobotDesign(), np.geomspace(1e3, 2e5, 25)
-    limits = [explicit_step_limit(robot_model(design.with_(stiff_cable=replace(design.stiff_cable, stiffness=float(k)))))
-              for k in stiffness]  # fmt: skip
+    cables = [replace(design.stiff_cable, stiffness=float(k)) for k in stiffness]
+    limits = [explicit_step_limit(robot_model(design.with_(stiff_cable=cable))) for cable in cables]
     here = design.stiff_cable.stiffness
     figure, axis = new_figure(size=(6, 3.2))
     axis.loglog(stiffness, 1e3 * np.array(limits), color=COLOURS[0], label="explicit forces: limit")

@@ -1,6 +1,6 @@
 """Sphinx: `make docs` builds the pages of this folder, and those that docs/generate.py makes, into build/docs.
 
-Nothing is fetched: no other project's index, no fonts, no scripts from elsewhere; docs/check.py holds the built pages to it.
+Nothing is fetched: no other project's index, no fonts, no scripts from elsewhere; docs/check.py holds pages to it.
 """
 
 import os
@@ -14,8 +14,8 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-import tensegym
-from docs.generate import write_pages
+import tensegym  # noqa: E402
+from docs.generate import write_pages  # noqa: E402
 
 project, author, release = "tensegym", "the tensegym authors", tensegym.__version__
 html_title = f"tensegym {release}"
@@ -51,7 +51,7 @@ _PAGES = {"index": "README.md", "project/contributing": "CONTRIBUTING.md", "proj
 
 
 def _from_the_top(app, name, source):
-    """Put a page of the repository's top in front of the page that stands for it here, its links turned to this folder."""
+    """Put a page of the repository's top before the page that stands for it here, its links turned to this folder."""
     if name not in _PAGES:
         return
     up = "../" * name.count("/")

@@ -2,8 +2,8 @@
 Six rods stand half a rod apart
 ===============================
 
-Six rods in three parallel pairs, 24 cables that all pull alike: which distance of the rods of a pair balances? With rods
-of length ``L`` at a distance ``d`` a cable is as long as ``sqrt(d^2 + (L - d)^2 + L^2) / 2``, and all of
+Six rods in three parallel pairs, 24 cables that all pull alike: which distance of the rods of a pair balances? With
+rods of length ``L`` at a distance ``d`` a cable is as long as ``sqrt(d^2 + (L - d)^2 + L^2) / 2``, and all of
 them pull alike where their sum is stationary: at ``d = L / 2``. There each is ``sqrt(3/8) L`` long.
 """
 

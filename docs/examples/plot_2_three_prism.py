@@ -4,7 +4,8 @@ The three-rod prism twists by 30 degrees
 
 The smallest tensegrity: three rods between two triangles of cables and three cables up the sides. It balances at one
 twist alone, 30 degrees beyond where the rods would stand straight in a row of the cables (150 degrees between the ends
-of a rod), whatever its size. Where all cables pull alike, the triangles' cables are ``sqrt(3)`` times as long as the others.
+of a rod), whatever its size. Where all cables pull alike, the triangles' cables are ``sqrt(3)`` times
+as long as the others.
 """
 
 import matplotlib.pyplot as plt
@@ -17,7 +18,7 @@ from tensegym.structure.structure import Structure
 corners = 2 * np.pi * np.arange(3) / 3
 ring = 0.3 * np.stack([np.cos(corners), np.sin(corners), 0 * corners], axis=1)
 straight = Structure(
-    nodes=np.concatenate([ring, ring + [0, 0, 0.25]]),
+    nodes=np.concatenate([ring, ring + np.array([0, 0, 0.25])]),
     rods=[[0, 4], [1, 5], [2, 3]],
     cables=[[0, 1], [1, 2], [2, 0], [3, 4], [4, 5], [5, 3], [0, 3], [1, 4], [2, 5]],
     stiff_cables=np.zeros((0, 2), int),

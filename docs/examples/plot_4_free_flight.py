@@ -2,8 +2,9 @@
 In free flight nothing turns the robot
 ======================================
 
-Far from ground and gravity, with its drives at work, a robot changes its shape as it spins. Yet its angular momentum stays to rounding, and its centre of mass goes straight on. An engine that integrates the velocity terms
-of turning rods carelessly fails this.
+Far from ground and gravity, with its drives at work, a robot changes its shape as it spins. Yet its angular momentum
+stays to rounding, and its centre of mass goes straight on. An engine that integrates the velocity terms of turning
+rods carelessly fails this.
 """
 
 import matplotlib.pyplot as plt
@@ -22,7 +23,7 @@ def flight(dt):
     with tensegym.TensegrityRobot(design, dt=dt, ground=False) as robot:
         robot.reset_rotated(Rotation.identity())
         arms = robot.poses_in_world[:, :3] - robot.centre_of_mass_in_world()
-        turning = np.concatenate([np.cross(SPIN, arms) + [1, 0, 0], np.tile(SPIN, (len(arms), 1))], axis=1)
+        turning = np.concatenate([np.cross(SPIN, arms) + np.array([1, 0, 0]), np.tile(SPIN, (len(arms), 1))], axis=1)
         robot.reset_rotated(Rotation.identity(), velocities=turning)
         for _ in range(40):
             robot.command(robot.command_limit * rng.uniform(0, 0.5, 6))

@@ -27,7 +27,7 @@ class Section(NamedTuple):
 
 
 class FileKind(NamedTuple):
-    """A kind of file. home: the module whose docstring shows one. sections: "name: module.Class" of its tables."""
+    """A kind of file. home: modules whose docstrings show one. sections: "name: module.Class" of its tables."""
 
     what: str
     home: str
@@ -35,11 +35,11 @@ class FileKind(NamedTuple):
 
 
 FILES = {
-    "design": FileKind("a robot: --design FILE.toml, gym.make(design=...), load_design", "design.design_file", (
+    "design": FileKind("a robot: --design FILE.toml, gym.make(design=...), load_design", "design.design_file design.groups", (
         ": design.design.RobotDesign", "structure, of the preset's kind: design.design_file.SixRods",
-        "passive_rod, active_rod: design.parameters.Rod",
-        "elastic_cable: design.parameters.ElasticCable", "stiff_cable: design.parameters.StiffCable",
-        "drive: design.parameters.Drive", "payload: design.parameters.Payload",
+        "passive_rod, active_rod, rods.NAME: design.parameters.Rod",
+        "elastic_cable, cables.NAME: design.parameters.ElasticCable", "stiff_cable, drives.NAME: design.parameters.StiffCable",
+        "drive, drives.NAME: design.parameters.Drive", "payload: design.parameters.Payload",
         "flexure: design.parameters.RodFlexure",
     )),
     "task": FileKind("a search, or an evaluation: design run --task, evaluate --task", "search.problem", (
@@ -60,7 +60,8 @@ FILES = {
 
 def example(name: str) -> str:
     """What a file looks like, in words and by an example: the docstring of its reader."""
-    return (import_module(f"tensegym.{FILES[name].home}").__doc__ or "").strip()
+    docs = [import_module(f"tensegym.{home}").__doc__ or "" for home in FILES[name].home.split()]
+    return "\n\n".join(doc.strip() for doc in docs)
 
 
 def sections(name: str) -> Iterator[Section]:

@@ -7,7 +7,7 @@
     stiffness = 400.0             # SI units; `tensegym fields design` lists all fields
     [payload]                     # a section makes one; leave it out for none
     [flexure]                     # likewise: rods split by a flexure hinge
-    [cables.vertical]             # a group of cables that differ; also [rods.NAME], [drives.NAME], see groups.py
+    [cables.vertical]             # a group of cables that differ; also [rods.NAME], [drives.NAME]
     pairs = [[1, 5], [2, 6]]
     stiffness = 500.0
 """
