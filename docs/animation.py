@@ -15,7 +15,8 @@ from tensegym.tasks.episode import Episode
 from tensegym.tasks.policy_trials import FIRST_SEED, policy_setup
 from tensegym.tasks.rollout import rollout
 
-SECONDS, WIDTH, HEIGHT, COLOURS = 8.0, 480, 300, 48
+SECONDS, COLOURS = 8.0, 48
+WIDTH, HEIGHT, CUT = 720, 540, (120, 150, 600, 450)  # pixels of the picture, and what is kept of it
 
 
 class Frames:
@@ -27,7 +28,7 @@ class Frames:
         self.pictures = list[Image.Image]()
 
     def __call__(self, episode: Episode) -> None:
-        self.pictures.append(Image.fromarray(render(episode.robot, WIDTH, HEIGHT)))
+        self.pictures.append(Image.fromarray(render(episode.robot, WIDTH, HEIGHT)).crop(CUT))
 
 
 def main(out: Path = Path(__file__).parent / "rolling.gif") -> None:

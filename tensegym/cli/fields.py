@@ -35,10 +35,11 @@ class FileKind(NamedTuple):
 
 
 FILES = {
-    "design": FileKind("a robot: --design FILE.toml, gym.make(design=...), load_design", "design.design_file design.groups", (
+    "design": FileKind("a robot: --design FILE, gym.make(design=...)", "design.design_file design.groups", (
         ": design.design.RobotDesign", "structure, of the preset's kind: design.design_file.SixRods",
         "passive_rod, active_rod, rods.NAME: design.parameters.Rod",
-        "elastic_cable, cables.NAME: design.parameters.ElasticCable", "stiff_cable, drives.NAME: design.parameters.StiffCable",
+        "elastic_cable, cables.NAME: design.parameters.ElasticCable",
+        "stiff_cable, drives.NAME: design.parameters.StiffCable",
         "drive, drives.NAME: design.parameters.Drive", "payload: design.parameters.Payload",
         "flexure: design.parameters.RodFlexure",
     )),
