@@ -15,8 +15,7 @@ from tensegym.tasks.episode import Episode
 from tensegym.tasks.policy_trials import FIRST_SEED, policy_setup
 from tensegym.tasks.rollout import rollout
 
-SECONDS, COLOURS = 8.0, 48
-WIDTH, HEIGHT, CUT = 720, 540, (120, 150, 600, 450)  # pixels of the picture, and what is kept of it
+SECONDS, WIDTH, HEIGHT, COLOURS = 8.0, 400, 280, 24
 
 
 class Frames:
@@ -28,7 +27,8 @@ class Frames:
         self.pictures = list[Image.Image]()
 
     def __call__(self, episode: Episode) -> None:
-        self.pictures.append(Image.fromarray(render(episode.robot, WIDTH, HEIGHT)).crop(CUT))
+        picture = render(episode.robot, WIDTH, HEIGHT, direction=episode.bearing.direction)
+        self.pictures.append(Image.fromarray(picture))
 
 
 def main(out: Path = Path(__file__).parent / "rolling.gif") -> None:
