@@ -1,4 +1,4 @@
-"""Draws rolling.gif, the animation of the README: `python -m docs.animation`.
+"""Draws rolling.webp, the animation of the README: `python -m docs.animation`.
 
 The shipped policy, from a seed of its evaluation, in real time; cables are coloured by tension.
 """
@@ -15,7 +15,7 @@ from tensegym.tasks.episode import Episode
 from tensegym.tasks.policy_trials import FIRST_SEED, policy_setup
 from tensegym.tasks.rollout import rollout
 
-SECONDS, WIDTH, HEIGHT, COLOURS = 8.0, 400, 280, 24
+SECONDS, WIDTH, HEIGHT = 8.0, 480, 360
 
 
 class Frames:
@@ -31,14 +31,14 @@ class Frames:
         self.pictures.append(Image.fromarray(picture))
 
 
-def main(out: Path = Path(__file__).parent / "rolling.gif") -> None:
+def main(out: Path = Path(__file__).parent / "rolling.webp") -> None:
     """Roll, draw, write."""
     setup, frames = policy_setup("rolling", seconds=SECONDS), Frames()
     with setup.robot() as robot:
         result = rollout(robot, make_controller(setup.controller), setup.task, FIRST_SEED, watcher=frames)
-    palette = frames.pictures[0].quantize(COLOURS, dither=Image.Dither.NONE)
-    first, *rest = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in frames.pictures]
-    first.save(out, save_all=True, append_images=rest, duration=round(1000 * frames.period), loop=0, optimize=True)
+    first, *rest = frames.pictures
+    pace = round(1000 * frames.period)
+    first.save(out, save_all=True, append_images=rest, duration=pace, loop=0, quality=60, method=2)
     print(f"{out}: {len(rest) + 1} pictures, {out.stat().st_size / 1e6:.2f} MB, {result.gait.speed_lps:.3f} L/s")
 
 
