@@ -14,8 +14,8 @@
     to_mm = [40.0, 0.0]
     width_mm = 40.0
     thickness_mm = 0.8
-    end_thickness_mm = 0.4          # optional: the leaf tapers; thickness_mm is then that at from_mm
-    notch_mm = [5.0, 5.0]           # or: elliptic fillets at both ends of a web, semi-axes along and across the leaf
+    # end_thickness_mm = 0.4        # the leaf tapers; thickness_mm is then that at from_mm
+    # notch_mm = [5.0, 5.0]         # or: elliptic fillets at both ends of a web, semi-axes along and across the leaf
 
 or a preset with other dimensions: preset = "x-hinge", thickness_mm = 1.0.
 """
