@@ -32,7 +32,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "policy": ("tensegym.cli.policy:COMMANDS", "a policy for a robot's own computer: export"),
     "design": ("tensegym.cli.design:COMMANDS", "search for a design that makes a motion: run, resume, status"),
     "fields": ("tensegym.cli.fields:Fields", "what a design, task, training or other file may hold: units, ranges"),
-    "flexure": ("tensegym.cli.flexure:COMMANDS", "flexible joints: table, curves, fit, solve, travel, guide, track, stand"),
+    "flexure": ("tensegym.cli.flexure:COMMANDS", "flexible joints: table, fit, solve, travel, guide, ..."),
 }
 EXTRAS = {"optuna": "search", "cmaes": "search", "sqlalchemy": "search", "ray": "cluster", "onnx": "onnx",
           "viser": "view", "trimesh": "view"}  # fmt: skip

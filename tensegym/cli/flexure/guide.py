@@ -47,7 +47,7 @@ class Guide:
             raise InputError("travel_mm = 0; give a travel above 0")
         hinge = self.options.apply(self.hinge)
         reach = hinge.length / 10 if self.travel_mm is None else MM * self.travel_mm
-        reference, columns = compare_guide(hinge, reach, self.axial_N)
+        reference, columns, missing = compare_guide(hinge, reach, self.axial_N)
         errors = {column.name: column.errors(reference) for column in columns}
         header = ["model", "y %", "x %", "turn %", "k y %", "k x %", "us"]
         ranges = axial_range(hinge, BeamConstraint(guide_of(hinge)), reach)
@@ -58,10 +58,11 @@ class Guide:
             f"largest misses of the FEM with {REFERENCE} elements, and time of all poses, warm, one thread:",
             table(header, [_row(column, errors[column.name]) for column in columns]),
             *([OUTSIDE] if any(np.isnan(column.poses).any() for column in columns) else []),
+            *([missing] if missing else []),
             f"the beam constraint model is within 5 % at {1e3 * reach:.4g} mm under axial forces",
             table(["of", "from N", "to N", "p of a leaf"],
-                  [[name, f"{low:.4g}", f"{high:.4g}", f"{low / unit:.3g} to {high / unit:.3g}"]
-                   for name, (low, high) in ranges.items()]),
+                  [[name, f"{low + 0:.4g}", f"{high:.4g}", f"{low / unit + 0:.3g} to {high / unit:.3g}"] if low < high
+                   else [name, "none", "none", "-"] for name, (low, high) in ranges.items()]),
         ]  # fmt: skip
         if self.out is not None:
             draw_guide(hinge, reference, columns, errors, self.out)

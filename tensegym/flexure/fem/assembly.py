@@ -19,8 +19,8 @@ def strain_energy(mesh, mem):
         real = mesh.real[m]
         for i in range(first, first + count):
             one, two = mem.nodes[i], mem.nodes[i + 1]
-            total += energy(two[0] - one[0], two[1] - one[1], one[2], two[2], real[L0], real[COS], real[SIN],
-                            mesh.pieces[i, EA], mesh.pieces[i, EI])  # fmt: skip
+            total += energy(two[0] - one[0], two[1] - one[1], one[2], two[2], mesh.pieces[i, L0], real[COS],
+                            real[SIN], mesh.pieces[i, EA], mesh.pieces[i, EI])  # fmt: skip
     return total
 
 

@@ -12,26 +12,26 @@ from tensegym.compiled import kernel
 from .beam import OPTIONS, element
 
 # columns of leaf_real
-L0, COS, SIN, AX, AY, BX, BY = range(7)
-EA, EI = range(2)  # columns of pieces
+COS, SIN, AX, AY, BX, BY = range(6)
+EA, EI, L0, AT = range(4)  # columns of pieces
 
 
 @kernel(**OPTIONS)
 def condense(nodes, axial, real, pieces, count, held, strains, back, ends, loads):
     """Eliminate the inner nodes of one leaf; returns the number of negative pivots.
 
-    nodes (n + 1, 3) x, y, turn; pieces (n, 2) the elements' EA and EI; axial (n,) the geometric axial force; ``held``:
-    node 0 is on the ground, its terms are skipped. Out: strains (n, 5) gradient of eps and the axial force; back
-    (n + 2, 21) what ``recover`` needs, the last row scratch; ends (3, 9) the condensed blocks S00, S0n, Snn, each 3 x 3
-    row-major; loads (4, 3) condensed residuals at both ends, then the raw ones.
+    nodes (n + 1, 3) x, y, turn; pieces (n, 4) the elements; axial (n,) the geometric axial force; ``held``: node 0 is
+    on the ground, its terms are skipped. Out: strains (n, 5) gradient of eps and the axial force; back (n + 2, 21) what
+    ``recover`` needs, the last row scratch; ends (3, 9) the condensed blocks S00, S0n, Snn, each 3 x 3 row-major; loads
+    (4, 3) condensed residuals at both ends, then the raw ones.
     """
-    l0, cos0, sin0 = real[L0], real[COS], real[SIN]
+    cos0, sin0 = real[COS], real[SIN]
     negative = 0
     for i in range(count):
         x, y = nodes[i + 1, 0] - nodes[i, 0], nodes[i + 1, 1] - nodes[i, 1]
         out = back[count + 1]
-        element(x, y, nodes[i, 2], nodes[i + 1, 2], l0, cos0, sin0, pieces[i, EA], pieces[i, EI], axial[i],
-                out)  # fmt: skip
+        element(x, y, nodes[i, 2], nodes[i + 1, 2], pieces[i, L0], cos0, sin0, pieces[i, EA], pieces[i, EI],
+                axial[i], out)  # fmt: skip
         strains[i, 0], strains[i, 1], strains[i, 2] = out[14], out[15], out[16]
         strains[i, 3], strains[i, 4] = out[17], out[18]
         fx, fy, m1, m2 = out[0], out[1], out[2], out[3]
@@ -137,7 +137,7 @@ def condense(nodes, axial, real, pieces, count, held, strains, back, ends, loads
 
 
 @kernel(**OPTIONS)
-def recover(nodes, axial, real, pieces, count, held, strains, back, first, last):
+def recover(nodes, axial, pieces, count, held, strains, back, first, last):
     """Move the inner nodes by the increments that follow from those of the ends (3,) and renew ``axial``; in place.
 
     Returns the largest increment, lengths counted in units of the element's rest length. The end nodes are left to the
@@ -161,7 +161,7 @@ def recover(nodes, axial, real, pieces, count, held, strains, back, first, last)
             nodes[i, 0] += ux
             nodes[i, 1] += uy
             nodes[i, 2] += um
-            largest = max(largest, abs(um), abs(ux) / real[L0], abs(uy) / real[L0])
+            largest = max(largest, abs(um), abs(ux) / pieces[i, L0], abs(uy) / pieces[i, L0])
         grow = strains[i, 0] * (vx - ux) + strains[i, 1] * (vy - uy) + strains[i, 2] * um + strains[i, 3] * vm
         axial[i] = strains[i, 4] + pieces[i, EA] * grow
         vx, vy, vm = ux, uy, um

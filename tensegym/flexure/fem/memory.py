@@ -11,7 +11,7 @@ from tensegym.arrays import FloatArray
 from tensegym.compiled import kernel
 
 from .beam import OPTIONS
-from .chain import AX, AY, BX, BY, COS, L0, SIN
+from .chain import AT, AX, AY, BX, BY, COS, SIN
 
 
 class Memory(NamedTuple):
@@ -50,8 +50,8 @@ def memory(mesh):
         real = mesh.real[m]
         place_ends(mesh, new, m)
         for i in range(1, count):
-            new.nodes[first + i, 0] = new.nodes[first, 0] + i * real[L0] * real[COS]
-            new.nodes[first + i, 1] = new.nodes[first, 1] + i * real[L0] * real[SIN]
+            new.nodes[first + i, 0] = new.nodes[first, 0] + mesh.pieces[first + i, AT] * real[COS]
+            new.nodes[first + i, 1] = new.nodes[first, 1] + mesh.pieces[first + i, AT] * real[SIN]
     return new
 
 

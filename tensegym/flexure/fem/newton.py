@@ -75,7 +75,7 @@ def newton(mesh, mem, mode, case):
                     mem.step[end, 2] = right[k + 2]
                 else:
                     mem.step[end, 0], mem.step[end, 1], mem.step[end, 2] = 0.0, 0.0, 0.0
-            inside = recover(mem.nodes[first:], mem.axial[first:], real, mesh.pieces[first:], count, a == 0,
+            inside = recover(mem.nodes[first:], mem.axial[first:], mesh.pieces[first:], count, a == 0,
                              mem.strains[first:], mem.back[first:], mem.step[0], mem.step[1])  # fmt: skip
             largest = max(largest, inside)
         for b in range(1, tip + 1):

@@ -16,6 +16,7 @@ import numpy as np
 from tensegym.arrays import FloatArray
 from tensegym.flexure.hinge import Hinge, Leaf
 
+from .chain import AT
 from .memory import Memory
 from .mesh import Mesh
 
@@ -37,7 +38,8 @@ def out_of_plane_stiffness(hinge: Hinge, mesh: Mesh, mem: Memory) -> FloatArray:
             x, y = mem.nodes[first + i, :2] - mem.poses[body, :2]
             carried = np.array([[1.0, y, -x], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]])
             maps[i] = (3 * (body - 1), carried)
-        thickness = leaf.thickness_at((np.arange(count) + 0.5) / count)
+        at = mesh.pieces[first : first + count + 1, AT] / leaf.length
+        thickness = leaf.thickness_at(0.5 * (at[:-1] + at[1:]))
         for i in range(count):
             chord = mem.nodes[first + i + 1, :2] - mem.nodes[first + i, :2]
             part = _element(hinge, leaf, float(thickness[i]), chord)

@@ -34,7 +34,7 @@ def near(mesh, mem, before):
         work += share
         size += abs(share)
     gain = mem.held[3] - before.held[3]
-    rounding = 1e-20 * mesh.pieces[0, EA] * mesh.real[0, L0] + 1e-12 * (mem.held[3] + before.held[3])
+    rounding = 1e-20 * mesh.pieces[0, EA] * mesh.pieces[0, L0] + 1e-12 * (mem.held[3] + before.held[3])
     return abs(gain - work) <= LARGEST_GAP * (abs(gain) + size) + rounding
 
 
@@ -46,7 +46,7 @@ def moved(mesh, mem, before):
         _, _, count, first = mesh.ends[m]
         for i in range(first, first + count + 1):
             along = abs(mem.nodes[i, 0] - before.nodes[i, 0]) + abs(mem.nodes[i, 1] - before.nodes[i, 1])
-            largest = max(largest, abs(mem.nodes[i, 2] - before.nodes[i, 2]), 0.5 * along / mesh.real[m, L0])
+            largest = max(largest, abs(mem.nodes[i, 2] - before.nodes[i, 2]), 0.5 * along / mesh.pieces[i, L0])
     return largest
 
 

@@ -16,7 +16,7 @@ from .solution import Solution, together
 from .tangent import memory_at, tip_stiffness
 
 ROUNDS = 30
-ACCURACY = 1e-9  # of L
+ACCURACY, FAR = 1e-9, 0.1  # of L: of the travel, and the most that one round goes by the tangent
 
 
 def push(hinge: Hinge, travel: ArrayLike, *, axial: float = 0.0, moment: float = 0.0,
@@ -34,13 +34,18 @@ def push(hinge: Hinge, travel: ArrayLike, *, axial: float = 0.0, moment: float =
         The states with their nodes.
 
     Raises:
-        FlexureError: where the hinge cannot be pushed that far: it buckles, or gives way without end.
+        FlexureError: for a travel of the hinge's length or more, and where the hinge cannot be pushed that far: it
+            buckles, or gives way without end.
     """
+    targets = np.atleast_1d(number_array(travel, "travel"))
+    if not (np.abs(targets) < hinge.length).all():
+        raise FlexureError(f"travel = {1e3 * np.abs(targets).max():.4g} mm is not below the hinge's length "
+                           f"{1e3 * hinge.length:g} mm")  # fmt: skip
     mesh, parts, force, last, flexibility = mesh_of(hinge, elements), [], 0.0, np.nan, np.nan
-    for target in np.atleast_1d(number_array(travel, "travel")):
+    for target in targets:
         for _ in range(ROUNDS):
             if np.isfinite(flexibility):
-                force += (target - last) / flexibility
+                force += float(np.clip(target - last, -FAR * hinge.length, FAR * hinge.length)) / flexibility
             found = apply_wrench(hinge, [axial, force, moment], elements=elements, keep_nodes=True)
             if found.status[0] != CONVERGED:
                 why = f"{force:.4g} N across and {axial:.4g} N along it {found.reason(0)}"

@@ -13,7 +13,7 @@ import numpy as np
 from tensegym.flexure.hinge import Hinge
 
 from .beam import element
-from .chain import COS, EA, EI, L0, SIN
+from .chain import AT, COS, EA, EI, L0, SIN
 from .memory import Memory
 from .mesh import Mesh
 
@@ -34,13 +34,13 @@ def largest_stress(hinge: Hinge, mesh: Mesh, mem: Memory) -> Stress:
     found, out = [Stress(0.0, 0, 0.0)], np.zeros(20)
     for number, (leaf, (_, _, count, first)) in enumerate(zip(hinge.leaves, mesh.ends, strict=True)):
         real = mesh.real[number]
-        shares = np.arange(count + 1) / count
+        shares = mesh.pieces[first : first + count + 1, AT] / leaf.length
         thickness = leaf.thickness_at(shares)
         forces = np.empty((count, 3))  # axial force, moments at both ends of every element
         for i in range(count):
             (x1, y1, turn1), (x2, y2, turn2) = mem.nodes[first + i], mem.nodes[first + i + 1]
-            ea, ei = mesh.pieces[first + i, EA], mesh.pieces[first + i, EI]
-            element(x2 - x1, y2 - y1, turn1, turn2, real[L0], real[COS], real[SIN], ea, ei, 0.0, out)
+            ea, ei, l0 = mesh.pieces[first + i, EA], mesh.pieces[first + i, EI], mesh.pieces[first + i, L0]
+            element(x2 - x1, y2 - y1, turn1, turn2, l0, real[COS], real[SIN], ea, ei, 0.0, out)
             forces[i] = out[18], out[2], out[3]
         size = np.zeros(count + 1)
         for end, part in ((1, slice(0, count)), (2, slice(1, count + 1))):

@@ -90,8 +90,8 @@ def _turning(mesh: Mesh, mem: Memory) -> FloatArray:
         for body, i, sign, x, y in ((a, first, -1, real[AX], real[AY]),
                                     (b, first + count - 1, 1, real[BX], real[BY])):  # fmt: skip
             (x1, y1, turn1), (x2, y2, turn2) = mem.nodes[i], mem.nodes[i + 1]
-            ea, ei = mesh.pieces[i, EA], mesh.pieces[i, EI]
-            element(x2 - x1, y2 - y1, turn1, turn2, real[L0], real[COS], real[SIN], ea, ei, mem.axial[i], out)
+            ea, ei, l0 = mesh.pieces[i, EA], mesh.pieces[i, EI], mesh.pieces[i, L0]
+            element(x2 - x1, y2 - y1, turn1, turn2, l0, real[COS], real[SIN], ea, ei, mem.axial[i], out)
             c, s = math.cos(mem.poses[body, 2]), math.sin(mem.poses[body, 2])
             sizes[body] += sign * (out[0] * (c * x - s * y) + out[1] * (s * x + c * y))
     return sizes[1:]

@@ -56,8 +56,9 @@ class Column:
         return {name: float(error) for name, error in out.items()}
 
 
-def compare_guide(hinge: Hinge, reach: float, axial: float = 0.0) -> tuple[Travel, list[Column]]:
-    """The reference, POINTS + 1 even forces from rest to where the travel is ``reach`` [m], and every model under them.
+def compare_guide(hinge: Hinge, reach: float, axial: float = 0.0) -> tuple[Travel, list[Column], str]:
+    """The reference, POINTS + 1 even forces from rest to where the travel is ``reach`` [m], and every model under them;
+    why there are no fitted ones, empty where there are.
 
     Raises:
         FlexureError: for a hinge that is no parallelogram, or that cannot be pushed that far.
@@ -79,7 +80,10 @@ def compare_guide(hinge: Hinge, reach: float, axial: float = 0.0) -> tuple[Trave
                               best_of(sweep, 5)))  # fmt: skip
     for name, make in CLOSED.items():
         columns.append(_closed(name, make(guide), loads[:, 1], reference, axial))
-    return reference, columns + _fitted(hinge, loads)
+    try:
+        return reference, columns + _fitted(hinge, loads), ""
+    except FlexureError as error:
+        return reference, columns, f"no fitted models: {error}"
 
 
 def axial_range(

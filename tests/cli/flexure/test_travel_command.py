@@ -38,6 +38,7 @@ def test_travel_of_a_hinge(cli):
     (("tfch", "--travel-mm", 0), ("travel_mm = 0",)),
     (("tfch", "--travel-mm", 1, "--max-angle-deg", 3), ("give one of --travel-mm",)),
     (("tfch", "--strength-MPa", 0), ("strength_MPa = 0",)),
+    (("tfch", "--travel-mm", 70), ("travel = 70 mm is not below the hinge's length 40 mm",)),
     (("tfch", "--points", 1), ("points = 1", "[2, 1000]")),
     (("parallel-guide", "--axial-N", -900), ("buckles at", "lower the travel or the load")),
     (("tfch", "--out", "no/where.png"), ("no folder",)),
