@@ -20,6 +20,7 @@ PLACES = {  # of each shelf: column, row from below, what stands there
     "structures": (-0.6, 1.9, "builders of them"),
     "flexure": (1.2, 1.0, "hinges, FEM, joint models"),
     "design": (0.5, 2.0, "a robot as data"),
+    "exchange": (-0.6, 2.9, "files of other tools"),
     "physics": (0.5, 3.0, "the compiled substep"),
     "engine": (1.4, 3.8, "what a robot needs of one"),
     "bullet": (1.9, 4.7, "PyBullet"),

@@ -11,9 +11,10 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 SHELVES = (  # each may import from itself and from those before it
-    "errors", "arrays", "files", "compiled", "tables", "report", "plotting", "progress", "processes",
-    "flexure", "structure", "structures", "design", "physics", "engine", "bullet", "mujoco", "robot", "flexible",
-    "control", "tasks", "envs", "urdf", "replay", "train", "search", "compare", "validation", "view", "tensegym", "cli",
+    "errors", "arrays", "files", "compiled", "tables", "report", "plotting", "progress", "processes", "flexure",
+    "structure", "structures", "design", "exchange", "physics", "engine", "bullet", "mujoco", "robot", "flexible",
+    "control", "tasks", "envs", "urdf", "replay", "train", "search", "compare", "validation", "view", "tensegym",
+    "cli",
     "__main__",
 )  # fmt: skip
 ENGINES = {"pybullet": "bullet", "pybullet_data": "bullet", "mujoco": "mujoco"}  # and the one shelf that imports each

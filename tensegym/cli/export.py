@@ -14,6 +14,7 @@ from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import as_design, save_design
 from tensegym.design.urdf_writer import urdf_files
 from tensegym.errors import InputError
+from tensegym.exchange import matrix_files, ntrt_text
 from tensegym.files import replace_path, write_text
 from tensegym.mujoco.robot_mjcf import robot_mjcf
 from tensegym.physics.robot_arrays import robot_model
@@ -23,7 +24,7 @@ from tensegym.structure.faces import face_by_nodes, hull_faces, resting_rotation
 
 from .standing import tell_unless_standing
 
-FORMATS = ("mjcf", "urdf")
+FORMATS = ("mjcf", "urdf", "ntrt", "matrices")
 
 
 @dataclass(frozen=True)
@@ -32,16 +33,19 @@ class Export:
 
     mjcf: robot.xml, the whole robot standing on a face, its cables as tendons that only pull, its winches as actuators
     whose control is the length wound in [m]. urdf: a file for every kind of rod, without cables, which URDF has not.
+    ntrt: model.yaml; matrices: nodes.csv, rods.csv, cables.csv; both without drives, payload and flexures.
     """
 
     design: Annotated[str, tyro.conf.Positional] = "six_rod"
     """A preset (six_rod, six_rod_flexible, paper) or a TOML file."""
     to: str = "mjcf"
-    """Format: mjcf, urdf."""
+    """Format: mjcf, urdf, ntrt, matrices."""
     out: Path = Path("export")
     """Folder to write; must not be there yet."""
     face: str = ""
     """Face to stand on, by its nodes, such as 3-5-12; default: the first one. Of mjcf."""
+    units: str = "m"
+    """Unit of length in ntrt and matrices: m, dm, cm, mm, in."""
 
     def run(self) -> Report:
         if self.to not in FORMATS:
@@ -52,7 +56,7 @@ class Export:
         if not self.out.parent.is_dir():
             raise FileNotFoundError(f"no folder {self.out.parent} to make {self.out.name} in")
         tell_unless_standing(design, "pybullet")
-        texts = {"robot.xml": self._mjcf(design)} if self.to == "mjcf" else urdf_files(design)
+        texts = self._texts(design)
         with replace_path(self.out) as folder:
             folder.mkdir()
             save_design(design, folder / "design.toml")
@@ -61,6 +65,13 @@ class Export:
         names = [*texts, "design.toml"]
         text = table(["out", "files"], [[str(self.out), " ".join(names)]])
         return Report(text, {"out": str(self.out), "files": names})
+
+    def _texts(self, design: RobotDesign) -> dict[str, str]:
+        if self.to == "ntrt":
+            return {"model.yaml": ntrt_text(design, self.units)}
+        if self.to == "matrices":
+            return matrix_files(design, self.units)
+        return {"robot.xml": self._mjcf(design)} if self.to == "mjcf" else urdf_files(design)
 
     def _mjcf(self, design: RobotDesign) -> str:
         faces = hull_faces(design.standing)

@@ -233,6 +233,32 @@ def _pictures() -> list[bytes]:
     return found
 
 
+def _ntrt(path: Path) -> Any:
+    from tensegym.exchange import read_ntrt
+
+    return read_ntrt(path, "dm", 10.0)
+
+
+def _nodes(path: Path) -> Any:
+    from tensegym.exchange import read_matrices
+
+    return read_matrices(path, path.with_name("rods.csv"), path.with_name("cables.csv"), "mm", 1)
+
+
+def _members(path: Path) -> Any:
+    from tensegym.exchange import read_matrices
+
+    return read_matrices(path.with_name("nodes.csv"), path, path.with_name("cables.csv"), "mm", 1)
+
+
+@lru_cache(maxsize=1)
+def _matrices() -> dict[str, bytes]:
+    from tensegym.design.design_file import as_design
+    from tensegym.exchange import matrix_files
+
+    return {name: text.encode() for name, text in matrix_files(as_design("six_rod")).items()}
+
+
 def _controller(path: Path) -> Any:
     from tensegym.control.table import make_controller, with_defaults
     from tensegym.errors import InputError
@@ -265,6 +291,11 @@ READERS = {
         Reader("commands", "input.csv", _commands, _command_rows),
         Reader("measured", "input.csv", _measured, _measured_rows),
         Reader("loads", "input.csv", _loads, lambda: [b"Fx_N,Fy_N,Mz_Nmm\n0,0.5,10\n-0.5,0.2,-20\n0,0,0\n"]),
+        Reader("ntrt", "input.yaml", _ntrt, lambda: _files("tests/exchange/cases/*.yaml"), yaml.safe_load, to_yaml,
+               tuple(sorted((ROOT / "tests/exchange/cases").glob("*.yaml")))),
+        Reader("nodes", "nodes.csv", _nodes, lambda: [_matrices()["nodes.csv"]], beside=_matrices),
+        Reader("members", "rods.csv", _members, lambda: [_matrices()["rods.csv"], b"1;2\n3;4\n5;6\n7;8\n9;10\n11;12\n"],
+               beside=_matrices),
         Reader("picture", "input.png", _picture, _pictures),
         Reader("controller", "input.toml", _controller, _controllers, from_toml, to_toml),
         Reader("policy", "policy.json", folders.read_policy_folder, lambda: [folders.policy()["policy.json"]],

@@ -1,0 +1,175 @@
+"""NTRT's YAML: what a model becomes, in which units, and back; substructures and bonds; what is refused."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from tensegym.design.design_file import design_from_dict
+from tensegym.errors import InputError
+from tensegym.exchange import ntrt_text, read_ntrt
+
+CASES = Path(__file__).parent / "cases"
+
+
+def written(folder, name="model.yaml", **tables):
+    path = folder / name
+    path.write_text(yaml.safe_dump(tables, sort_keys=False))
+    return path
+
+
+def small(**changes):
+    """A prism of three rods, by its tables."""
+    return yaml.safe_load((CASES / "prism3.yaml").read_text()) | changes
+
+
+def test_a_model_in_decimetres_becomes_one_in_si():
+    """A force is in kg dm/s^2, a density in kg/dm^3; stiffness and damping are in no unit of length."""
+    table, notes = read_ntrt(CASES / "prism3.yaml", "dm")
+    design = design_from_dict(table)
+    assert design.structure.nodes[3] == pytest.approx([0.4, 0, 0.45])  # y is up there, z here
+    cable = design.each_cable[0]
+    assert (cable.stiffness, cable.damping, cable.pretension) == pytest.approx((700, 6, 12))
+    length = np.hypot(np.sqrt(3) * 4, 4.5)
+    assert design.passive_rod.mass == pytest.approx(0.45 * np.pi * 0.1**2 * length, rel=1e-4)
+    assert design.passive_rod.tube_outer_radius == pytest.approx(0.01)
+    assert [note for note in notes if "roll_friction" in note]
+
+
+@pytest.mark.parametrize("name", ["prism3", "prism4", "six_bar", "double_prism"])
+@pytest.mark.parametrize("units", ["dm", "mm"])
+def test_round_trips(tmp_path, name, units):
+    """A design written as a model and read again has the same nodes, members, masses and cables."""
+    design = design_from_dict(read_ntrt(CASES / f"{name}.yaml", "dm").table)
+    (tmp_path / "back.yaml").write_text(ntrt_text(design, units))
+    back = design_from_dict(read_ntrt(tmp_path / "back.yaml", units).table)
+    np.testing.assert_allclose(back.standing.nodes, design.standing.nodes, atol=1e-9)
+    assert set(map(frozenset, back.structure.rods.tolist())) == set(map(frozenset, design.structure.rods.tolist()))
+    assert back.mass == pytest.approx(design.mass)
+    assert back.friction == design.friction
+    mine = dict(zip(map(frozenset, design.structure.cables.tolist()), design.each_cable, strict=True))
+    for pair, cable in zip(back.structure.cables.tolist(), back.each_cable, strict=True):
+        other = mine.pop(frozenset(pair))
+        assert (cable.stiffness, cable.damping, cable.pretension) == pytest.approx(
+            (other.stiffness, other.damping, other.pretension))  # fmt: skip
+    assert not mine
+
+
+def test_the_groups_of_a_model_are_those_of_its_builders():
+    design = design_from_dict(read_ntrt(CASES / "prism4.yaml", "dm").table)
+    assert {group.name: len(group.pairs) for group in design.cables} == {"around": 8, "upright": 4}
+    assert set(design.rest_tensions.tolist()) == {15.0, 24.0}
+
+
+def test_a_spine_of_substructures():
+    """Offsets count from 0, the turned vertebrae have their nodes in each other's places, every tie is upright."""
+    table, _ = read_ntrt(CASES / "spine.yaml", "dm", pretension=8.0)
+    nodes = np.array(table["structure"]["nodes"])
+    assert len(table["structure"]["rods"]) == 24
+    assert nodes[3::4] == pytest.approx(np.array([[0, 0, 0.244949 + 0.146969 * n] for n in range(4)]), abs=1e-6)
+    ties = np.array(table["cables"]["tie"]["pairs"]) - 1
+    assert nodes[ties[:, 1]] - nodes[ties[:, 0]] == pytest.approx(np.tile([0, 0, 0.146969], (9, 1)), abs=1e-4)
+    hangers = np.array(table["cables"]["hanger"]["pairs"]) - 1
+    assert nodes[hangers[:, 0], 2] - nodes[hangers[:, 1], 2] == pytest.approx(0.09798)
+    assert (table["cables"]["hanger"]["pretension"], table["cables"]["tie"]["pretension"]) == (8.0, 8.0)
+
+
+def test_a_bond_of_nodes_to_edges_lays_one_part_on_another():
+    """Plane on plane and centre on centre, each node out by the middle of its edge (which is half as far); a cable
+    along such an edge is gone for two by way of the node, and so are those between the nodes."""
+    table, _ = read_ntrt(CASES / "double_prism.yaml", "dm")
+    nodes, cables = np.array(table["structure"]["nodes"]), table["structure"]["cables"]
+    high, low = nodes[3:6], nodes[6:9]
+    middles = (high + np.roll(high, -1, axis=0)) / 2
+    np.testing.assert_allclose(low - low.mean(axis=0), 2 * (middles - middles.mean(axis=0)), atol=1e-4)
+    np.testing.assert_allclose(low.mean(axis=0), middles.mean(axis=0), atol=1e-9)
+    assert nodes[9:12, 2] == pytest.approx(0.9)
+    assert len(cables) == 9 + 9 - 3 - 3 + 6
+    pairs = {frozenset(pair) for pair in cables}
+    assert not pairs & {frozenset(pair) for pair in ((4, 5), (5, 6), (6, 4), (7, 8), (8, 9), (9, 7))}
+    assert {frozenset((4, 7)), frozenset((7, 5))} <= pairs
+
+
+def test_parts_are_turned_then_scaled_then_moved(tmp_path):
+    """About their middle, or the reference; the scale about the middle, too."""
+    written(tmp_path, "part.yaml", nodes={"a": [1, 0, 0], "b": [3, 0, 0]})
+    turn = {"axis": [0, 0, 3], "angle": 90}
+    bond = {"string": {"p/q/node_node": [["a", "b"]]}, "rod": {"p/q/node_node": [["a", "a"], ["b", "b"]]}}
+    path = written(tmp_path, substructures={
+        "p/q": {"path": "part.yaml", "offset": [0, 0, 5]},
+        "q": {"rotation": turn, "scale": 2.0, "translation": [7, 0, 0]},
+    }, bond_groups=bond)  # fmt: skip
+    nodes = np.array(read_ntrt(path, "m", 1.0).table["structure"]["nodes"])
+    wanted = {(1, 0, 0), (3, 0, 0), (2 + 7, -2, 5), (2 + 7, 2, 5)}  # x, y, z there
+    assert {(round(x, 9), round(z, 9), round(-y, 9)) for x, y, z in nodes} == wanted
+    path = written(tmp_path, substructures={
+        "p/q": {"path": "part.yaml", "offset": [0, 0, 5]}, "q": {"rotation": turn | {"reference": [0, 0, 0]}},
+    }, bond_groups=bond)  # fmt: skip
+    nodes = np.array(read_ntrt(path, "m", 1.0).table["structure"]["nodes"])
+    wanted = {(1, 0, 0), (3, 0, 0), (0, 1, 5), (0, 3, 5)}
+    assert {(round(x, 9), round(z, 9), round(-y, 9)) for x, y, z in nodes} == wanted
+
+
+def test_nodes_at_one_place_are_one_and_those_of_no_member_go(tmp_path):
+    nodes = small()["nodes"] | {"twin": small()["nodes"]["low1"], "spare": [9, 9, 9]}
+    pairs = small()["pair_groups"]
+    pairs["tendon"][0] = ["twin", "low2"]
+    table, notes = read_ntrt(written(tmp_path, **small(nodes=nodes, pair_groups=pairs)), "dm")
+    assert len(table["structure"]["nodes"]) == 6
+    assert [1, 2] in table["structure"]["cables"]
+    assert "1 nodes that lie where another does were joined" in notes[0]
+    assert "1 nodes without a member" in notes[1]
+
+
+@pytest.mark.parametrize(("changes", "reason"), [
+    ({"pair_groups": {"rod": [["low1", "low9"]]}}, r"pair group 'rod': no node 'low9'"),
+    ({"pair_groups": {"wire": [["low1", "low2"]]}}, "no builder makes pairs tagged 'wire'"),
+    ({"pair_groups": {"rod": [["low1", "low2", "low3"]]}}, "row 1 .*a row holds two names"),
+    ({"pair_groups": {"rod": [["low1", "high2"]]}}, "1 rods and 0 cables"),
+    ({"nodes": {"low1": [0, 0]}}, "node 'low1' = "),
+    ({"nodes": {"low1": [0, "1e3", 0]}}, "without quotation marks"),
+    ({"builders": {"rod": {"class": "tgBoxInfo"}}}, "'tgBoxInfo' is no rod and no cable"),
+    ({"builders": {"rod": {"class": "tgRodInfo", "parameters": {"denstiy": 1}}}}, "'denstiy'.*density"),
+    ({"builders": {"rod": {"class": "tgRodInfo", "parameters": {"density": -1}}}}, "density is below 0"),
+    ({"builders": {"tendon": {"class": "tgBasicActuatorInfo"}}}, "cables 'tendon' have no pretension"),
+    ({"substructures": {"a": {"path": "/etc/passwd"}}}, "is absolute"),
+    ({"substructures": {"a": {"rotation": {}}}}, "'a' has no path"),
+    ({"bond_groups": {"tendon": {"a/b/node_node": []}}}, "no substructure 'a'"),
+    ({"bond_groups": {"tendon": {"a/b": []}}}, "node_node or node_edge"),
+    ({"pair_group": {}}, "pair_group"),
+])  # fmt: skip
+def test_what_is_no_model_is_refused_by_name(tmp_path, changes, reason):
+    with pytest.raises(InputError, match=reason):
+        read_ntrt(written(tmp_path, **small(**changes)), "dm")
+
+
+@pytest.mark.parametrize(("units", "reason"), [(None, "give units, one of m, dm"), ("ell", "'ell' is not one of m")])
+def test_units_are_asked_for(units, reason):
+    with pytest.raises(InputError, match=reason):
+        read_ntrt(CASES / "prism3.yaml", units)
+
+
+def test_files_that_grow_without_end_are_refused(tmp_path):
+    """One that holds itself, and five that hold the next ten times."""
+    with pytest.raises(InputError, match="beyond 12 deep"):
+        read_ntrt(written(tmp_path, substructures={"a": {"path": "model.yaml"}}), "m")
+    names = "/".join("abcdefghij")
+    for n in range(5):
+        written(tmp_path, f"{n}.yaml", substructures={names: {"path": f"{n + 1}.yaml"}})
+    written(tmp_path, "5.yaml", nodes={"x": [0, 0, 0]})
+    with pytest.raises(InputError, match="300 in all"):
+        read_ntrt(tmp_path / "0.yaml", "m")
+
+
+@pytest.mark.parametrize("text", ["a: &x [1]\nb: *x\n", "!!python/object/apply:os.system ['echo']\n", "nodes: [1, 2]\n",
+                                  "- 1\n", "nodes: {a: [.nan, 0, 0]}\n"])  # fmt: skip
+def test_yaml_that_is_more_than_data_is_refused(tmp_path, text):
+    (tmp_path / "model.yaml").write_text(text)
+    with pytest.raises(InputError):
+        read_ntrt(tmp_path / "model.yaml", "m")
+
+
+def test_a_substructure_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(FileNotFoundError, match=r"none\.yaml"):
+        read_ntrt(written(tmp_path, substructures={"a": {"path": "none.yaml"}}), "m")
