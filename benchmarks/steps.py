@@ -25,7 +25,7 @@ from tensegym.robot.robot import TensegrityRobot
 from tensegym.search.confirm import FIRST_SEED, TIME_STEP, pick
 from tensegym.search.evaluate import TrialSpec, try_all
 from tensegym.tasks.episode import Episode
-from tensegym.tasks.goal import Neighbour
+from tensegym.tasks.step_onto import Neighbour
 from tensegym.tasks.task import Task
 
 
@@ -48,14 +48,14 @@ class Steps:
         for who, values in (("start", problem.space.start), (f"trial {best}", finished[best][0])):
             tables = problem.space.apply(values)
             episodes = try_all(TrialSpec(0, tables["design"], tables["controller"], task, seeds)).episodes
-            kinds = _kinds(design_from_dict(tables["design"]), task, seeds)
+            kinds = kinds_of(design_from_dict(tables["design"]), task, seeds)
             for kind in sorted(set(kinds)):
                 arrived = [e["arrived"] for e, k in zip(episodes, kinds, strict=True) if k == kind]
                 rows.append([who, kind, len(arrived), float(np.mean(arrived))])
         return table(["design", "step", "tried", "arrived, share"], rows)
 
 
-def _kinds(design: RobotDesign, task: Task, seeds: Sequence[int]) -> list[str]:
+def kinds_of(design: RobotDesign, task: Task, seeds: Sequence[int]) -> list[str]:
     """Which kind of face each step begins on, and which it is to reach."""
     kinds = []
     with TensegrityRobot(design, dt=task.dt) as robot:

@@ -9,7 +9,9 @@ from gymnasium.envs.registration import register, registry
 
 ROLLING = "tensegym/SixRodRolling-v0"
 FLEXIBLE_ROLLING = "tensegym/FlexibleSixRodRolling-v0"
-STEER, PLACES, PATH, COURSE = (f"tensegym/SixRod{name}-v0" for name in ("Steer", "Places", "Path", "Course"))
+STEER, PLACES, PATH, COURSE, STEP = (
+    f"tensegym/SixRod{name}-v0" for name in ("Steer", "Places", "Path", "Course", "Step")
+)
 EPISODE_SECONDS = 20.0
 CONTROL_PERIOD = 0.4
 
@@ -19,7 +21,8 @@ IDS: dict[str, tuple[float, dict[str, Any]]] = {  # seconds of an episode, and a
     STEER: (60.0, {"task": "steer", "observation": "full-goal"}),
     PLACES: (60.0, {"task": "places", "observation": "full-goal"}),
     PATH: (120.0, {"task": "path", "observation": "full-goal"}),
-    COURSE: (120.0, {"task": "course"}),
+    COURSE: (180.0, {"task": "course"}),
+    STEP: (60.0, {"task": "stand"}),
 }
 
 for name, (seconds, arguments) in IDS.items():

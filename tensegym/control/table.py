@@ -12,6 +12,10 @@
     kind = "planner"          # A* over the table of tips; as the walker, and
     reach = 0.4               # the field of tensegym.control.planner.PlannerSettings
 
+    kind = "stepper"          # from face to face in closed loop
+    holds = ""                # a file of `python benchmarks/holds.py`; default: the default design's
+    around = true             # and the fields of tensegym.control.stepper.StepperSettings
+
     kind = "policy"           # what PPO learned, alone
     policy = "rolling"
     observation = "onboard"   # default: as it was trained
@@ -33,10 +37,12 @@ from tensegym.tables import as_text, bounded, fill, noted, show
 
 from .controller import Controller
 from .cpg import Cpg, CpgController
+from .hold import Hold, load_holds
 from .planner import Planner, PlannerSettings
 from .policy import PolicyController, policy_env, policy_folder, shipped
 from .policy_file import read_policy
 from .random_commands import RandomCommands
+from .stepper import Stepper, StepperSettings
 from .tipping import Tip
 from .walker import Walker, WalkerSettings, load_table
 
@@ -60,6 +66,8 @@ def make_controller(table: Mapping[str, Any]) -> Controller:
     if kind == "planner":
         return Planner(None if (tips := table.get("tips", "")) == OWN else _tips(tips), parameters,
                        table.get("period", 0.1))  # fmt: skip
+    if kind == "stepper":
+        return Stepper(_holds(table.get("holds", "")), parameters)
     if kind == "policy":
         return PolicyController(parameters.policy, parameters.observation, parameters.period)
     return RandomCommands(parameters.period)
@@ -72,7 +80,9 @@ def with_defaults(table: Mapping[str, Any]) -> dict[str, Any]:
     if named := policy.get("policy") or getattr(parameters, "policy", ""):
         read_policy(policy_folder(named))
         policy_env(named)
-    besides = {name: table[name] for name in ("tips", "period") if name in table and kind in ("walker", "planner")}
+    besides: dict[str, Any] = {
+        name: table[name] for name in ("tips", "period", "holds") if name in table and name in KINDS[kind][1]
+    }
     return {"kind": kind, **policy, **besides, **asdict(parameters)}
 
 
@@ -93,6 +103,7 @@ KINDS: dict[str, tuple[type[Any], frozenset[str]]] = {
     "cpg": (Cpg, frozenset({"policy"})),
     "walker": (WalkerSettings, frozenset({"tips", "period"})),
     "planner": (PlannerSettings, frozenset({"tips", "period"})),
+    "stepper": (StepperSettings, frozenset({"holds"})),
     "policy": (_PolicySettings, frozenset()),
     "random": (_RandomSettings, frozenset()),
 }
@@ -117,3 +128,9 @@ def _parsed(table: Mapping[str, Any]) -> tuple[str, Any]:
 def _tips(path: str) -> list[Tip]:
     """A table of tips, read once a process; the default design's where the path is empty."""
     return load_table(Path(path) if path else shipped("walker") / "tips.json")
+
+
+@cache
+def _holds(path: str) -> list[Hold]:
+    """A table of holds, read once a process; the default design's where the path is empty."""
+    return load_holds(Path(path) if path else shipped("walker") / "holds.json")

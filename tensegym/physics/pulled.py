@@ -28,9 +28,11 @@ def stall_tension(drive: Drive) -> float:
     return pull * drive.gear_efficiency
 
 
-def pulled_state(design: RobotDesign, model: Model, part: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def pulled_state(
+    design: RobotDesign, model: Model, part: float | FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Poses (b, 7), pins' angles (p,) and tensions (s,) with all stiff cables wound in, each by a part of its deepest
-    pull or to the tension that stalls its drive.
+    pull, one or (w,), or to the tension that stalls its drive.
 
     Dynamic relaxation (Day 1965; Barnes 1999, "Form finding and analysis of tension structures"): the springs move
     bodies whose masses are the stiffness around them, so that steps of one are stable, under damping. Contacts are left

@@ -1,7 +1,7 @@
 """What is to be done, and how well it was done.
 
     task.py       Task: start, goal, ground, end, reward terms, metrics; the base class of all
-    roll.py       Roll; step_onto.py: StepOnto; motions.py: tasks by name, and from tables
+    roll.py       Roll; step_onto.py: StepOnto, to tip or to rest; motions.py: tasks by name, and from tables
     course.py     Course; obstacles.py, and where they lie: lane.py
     goal.py       what an episode wants; start.py: where it begins; reward.py; bound.py
     episode.py    Episode: one try, advanced a control step at a time; environments step one

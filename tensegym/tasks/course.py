@@ -36,7 +36,8 @@ class Course(Sizes, Task):
     """
 
     goal: Bound = parsed(Bound.parse, Bound("success", True, 0.7))
-    seconds: float = bounded(0.1, 3600, 120.0, "s", "length of an episode; it ends when all is passed")
+    seconds: float = bounded(0.1, 3600, 180.0, "s", "length of an episode; it ends when all is passed")
+    stuck: float = bounded(0.1, 3600, 40.0, "s", "given up where it has come no further for so long")
     obstacle: str = choice(*OBSTACLES, ALL, what="that is to be passed; all of them in a row")
     ahead: float = bounded(0.1, 10, 1.0, "L", "the wanted direction points to where the lane's middle is so far ahead")
 
@@ -72,7 +73,9 @@ class Course(Sizes, Task):
 
     def over(self, episode: Progress) -> str | None:
         goal = cast(Lane, episode.goal)
-        return "left the lane" if goal.left else "passed" if goal.done else None
+        if goal.left:
+            return "left the lane"
+        return "passed" if goal.done else "stuck" if goal.idle > self.stuck else None
 
     def measures(self, episode: Progress) -> dict[str, float]:
         goal, length = cast(Lane, episode.goal), episode.robot.design.length

@@ -48,14 +48,6 @@ class Heading(Goal):
 
 
 @dataclass(frozen=True)
-class Neighbour(Heading):
-    """Across one edge of the face the robot stands on, onto the next face."""
-
-    face: int = -1
-    """Index of the face to arrive on."""
-
-
-@dataclass(frozen=True)
 class Place(Goal):
     """A place to go to."""
 

@@ -76,6 +76,8 @@ class Lane(Path):
         """Obstacles so far that no part of the robot is before the end of."""
         self.seconds = 0.0
         """Since the start, until all were passed [s]."""
+        self.idle = 0.0
+        """Since it came further than ever before [s]."""
         self.left = False
         """Whether the centre of mass was out of the lane."""
 
@@ -86,7 +88,9 @@ class Lane(Path):
 
     def update(self, robot: TensegrityRobot, way: float, seconds: float) -> None:
         """As `Goal` has it."""
+        come = self.share
         super().update(robot, way, seconds)
+        self.idle = 0.0 if self.share > come else self.idle + seconds
         here = robot.centre_of_mass_in_world()
         self.seconds += seconds
         self.left |= bool(abs(here[1]) > self._half or here[0] < self._behind)

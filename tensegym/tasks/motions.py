@@ -29,6 +29,7 @@ class Motion(NamedTuple):
 MOTIONS: dict[str, Motion] = {
     "roll": Motion(Roll),
     "step": Motion(StepOnto, {"seconds": 4.0}),
+    "stand": Motion(StepOnto, {"seconds": 60.0, "rest": 1.0, "patience": 60.0}),
     "climb": Motion(Roll, {"goal": Bound("speed_lps", True, 0.05), "slope": 10.0}),
     "cross": Motion(Roll, {"roughness": 0.02}),
     "carry": Motion(Roll, {"payload": 0.5}),

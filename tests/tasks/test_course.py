@@ -69,6 +69,17 @@ def test_all_stand_in_a_row_and_only_their_own_stretch_is_rough():
     assert x[-1] > layout.ends[-1] + L
 
 
+def test_a_robot_that_lies_still_is_given_up():
+    task = as_task({"motion": "course", "obstacle": "bar", "stuck": 1.0})
+    with task.robot(DESIGN) as robot:
+        episode, steps = Episode(robot, task, np.random.default_rng(0)), 0
+        while not episode.ended and steps < 30:
+            episode.advance(np.zeros(6), 100)
+            steps += 1
+        assert (episode.ended, task.measures(episode)["success"]) == ("stuck", 0)
+        assert 5 < steps < 30  # of 0.2 s
+
+
 class Anywhere:
     """A robot that is put where it is wanted."""
 
