@@ -68,7 +68,7 @@ class Recording:
     places: FloatArray
     """(t, 2) where it is to go to [m], nan where there is no place."""
     faces: IntArray
-    """(t,) index of the face it stands on, -1 where that is not known."""
+    """(t,) index of the face it stands on, as last read; -1 where that is not known."""
     path: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
     """(k, 2) points of the path it is to follow [m]."""
     ground: Ground | None = FLAT

@@ -91,11 +91,12 @@ class Canvas:
 
     def painted(self, width: int, height: int) -> NDArray[np.uint8]:
         """(height, width, 3) the picture."""
-        image = np.full((height, width, 3), _PAPER)
+        image = np.full((height, width, 3), _PAPER, dtype=np.float32)
         items, depths = (np.concatenate(part) for part in zip(*self._above, strict=True))
         order = np.argsort(-depths.round(6), kind="stable")  # what is level stays as it came, whatever the last bit
         paint(image, np.concatenate([*self._below, items[order]]))
-        return image.round().astype(np.uint8)
+        image += 0.5
+        return image.astype(np.uint8)
 
 
 def picture(sight: Sight, width: int = 480, height: int = 360, yaw: float = 0.8) -> NDArray[np.uint8]:

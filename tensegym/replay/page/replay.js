@@ -61,6 +61,8 @@ async function start() {
     const act = { " ": () => play(!playing), ArrowLeft: () => step(-1), ArrowRight: () => step(1) }[e.key];
     if (act) { e.preventDefault(); act(); }
   });
+  const asked = new URLSearchParams(location.hash.slice(1)).get("t"); // run.html#t=4.3
+  if (asked !== null && Number.isFinite(Number(asked))) robot.seek(Math.min(robot.last, Math.max(robot.first, Number(asked))));
   const layOut = () => { plots.forEach((plot) => plot.layOut()); draw(); };
   window.addEventListener("resize", layOut);
   layOut();
