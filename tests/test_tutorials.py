@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 FOLDER = Path(__file__).parents[1] / "docs" / "tutorials"
-PAGES = sorted(FOLDER.glob("*.md"))
+PAGES = [*sorted(FOLDER.glob("*.md")), FOLDER.parent / "replays.md"]
 QUICK = {  # what a command gets besides, so that its work takes seconds; everything else is as it is printed
     "tensegym train": ["--steps", "20"], "tensegym roll": ["--episodes", "1", "--no-video"],
     "tensegym evaluate": ["--episodes", "2", "--seconds", "1", "--no-half-step", "--no-video", "--jobs", "1"],
