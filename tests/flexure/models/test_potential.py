@@ -130,7 +130,7 @@ def test_loads_outside_are_refused():
     top, force = BASE.box.max_angle, BASE.box.max_force
     with pytest.raises(FlexureError, match="theta = 31"):
         BASE.poses(np.radians([31.0]), [0.0, 0.0])
-    with pytest.raises(FlexureError, match=r"a force of .* N is outside the fitted"):
+    with pytest.raises(FlexureError, match=r"the force \(.*\) N is outside the fitted"):
         BASE.poses([0.0], [1.01 * force, 0.0])
     assert len(BASE.poses([top, -top], [[force, -force]] * 2)) == 2
 
