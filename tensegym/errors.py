@@ -18,7 +18,7 @@ def one_line(text: str) -> str:
 
 
 class StructureError(TensegymError, ValueError):
-    """Nodes, rods or cables that do not make a class-1 tensegrity, or that no self-stress can hold."""
+    """Nodes, rods or cables that do not make a tensegrity, or that no self-stress can hold."""
 
 
 class DesignError(TensegymError, ValueError):

@@ -61,6 +61,9 @@ class BulletWorld(Client, World):
         self.compiled = can_compile if compiled is None else compiled
         self.body_ids = self._load()
         """The engine's numbers of the robot's bodies, in the order of the scene."""
+        for pair in scene.joined:
+            one, two = (self.body_ids[row] for row in pair)
+            pybullet.setCollisionFilterPair(one, two, -1, -1, 0, physicsClientId=self.client)
         self._two_link_rows = [row for row, body in enumerate(scene.bodies) if body.second]
         self._second_links = [self.body_ids[row] for row in self._two_link_rows]
         self._pack = struct.Struct(f"{7 * len(self.body_ids)}d")

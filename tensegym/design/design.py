@@ -11,6 +11,7 @@ import numpy as np
 from tensegym.arrays import FloatArray, IntArray, frozen
 from tensegym.errors import DesignError, FlexureError
 from tensegym.structure import structure as structures
+from tensegym.structure.equilibrium import shared_compressions
 from tensegym.structure.structure import Structure
 from tensegym.tables import bounded, check_fields, noted, one_line, parsed
 
@@ -93,6 +94,9 @@ class RobotDesign:
         """Refuse rods that the prestress would buckle, and hinges that no pin stands for."""
         if self.flexure is None:
             return
+        if len(self.structure.shared):
+            raise DesignError(f"RodFlexure: node {self.structure.shared[0] + 1} is on more than one rod; rods that "
+                              "share nodes cannot be split, leave [flexure] out")  # fmt: skip
         compression = self.rod_compressions
         for rod in self.flexible_rods.tolist():
             limit = self.buckling_load(rod)
@@ -184,6 +188,8 @@ class RobotDesign:
     @cached_property
     def rod_compressions(self) -> FloatArray:
         """(r,) force along each rod at rest, positive in compression [N]."""
+        if len(self.standing.shared):
+            return frozen(shared_compressions(self.standing, self.rest_tensions))
         nodes, cables = self.standing.nodes, self.standing.cables
         span = nodes[cables[:, 1]] - nodes[cables[:, 0]]
         lengths = np.linalg.norm(span, axis=1)

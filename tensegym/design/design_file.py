@@ -2,7 +2,7 @@
 
     preset = "six_rod"            # start from this design; every other line changes it
     [structure]                   # optional: rod_length and spacing [m] of the six rods, or nodes, rods, cables,
-    rod_length = 0.8              # stiff_cables of any class-1 structure, or builder = "prism" (built.py)
+    rod_length = 0.8              # stiff_cables of any structure, or builder = "prism" (built.py)
     [elastic_cable]
     stiffness = 400.0             # SI units; `tensegym fields design` lists all fields
     [payload]                     # a section makes one; leave it out for none

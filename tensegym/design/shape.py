@@ -6,10 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.linalg import null_space
 
 from tensegym.arrays import FloatArray
 from tensegym.errors import ShapeError
-from tensegym.structure.equilibrium import in_words
+from tensegym.structure.equilibrium import equilibrium_matrix, in_words, members
 from tensegym.structure.rod_balance import cross_matrices
 from tensegym.structure.structure import Structure
 
@@ -56,7 +57,10 @@ def shape_of(
     flattened = thin < limit <= thickness(given.nodes)
     if not (tension > 0).any() or np.isnan(tension).any():
         return Shape(moved, thin, flattened, float("nan"), np.zeros_like(standing.nodes))
-    least, mode = least_stiffness(standing, tension, stiffness, radius)
+    if len(standing.shared):
+        least, mode = node_stiffness(standing, tension, stiffness)
+    else:
+        least, mode = least_stiffness(standing, tension, stiffness, radius)
     return Shape(moved, thin, flattened, least, mode)
 
 
@@ -140,3 +144,31 @@ def least_stiffness(
     mode = (shift @ (held @ vectors[:, 0])).reshape(-1, 3)
     return float(stiff[0]), mode / np.linalg.norm(mode, axis=1).max()
 
+
+
+def node_stiffness(structure: Structure, tension: ArrayLike, stiffness: ArrayLike) -> tuple[float, FloatArray]:
+    """`least_stiffness` of cables that end on the nodes, for rods that may share these.
+
+    Members of force density q resist with q times the difference of their ends' displacements, cables also with
+    (k - q) u u^T, over the displacements that keep the rods' lengths (Guest 2006, "The stiffness of prestressed
+    frameworks: a unifying approach").
+    """
+    matrix, cables = equilibrium_matrix(structure), len(structure.cables)
+    pairs = members(structure)
+    lengths = structure.lengths(pairs)
+    tension, stiffness = (np.broadcast_to(np.asarray(a, dtype=float), cables) for a in (tension, stiffness))
+    densities = np.concatenate([tension / lengths[:cables], np.zeros(len(structure.rods))])
+    densities[cables:] = np.linalg.lstsq(matrix[:, cables:], -matrix @ densities, rcond=None)[0]
+    ends = np.zeros((len(pairs), len(structure.nodes)))
+    ends[np.arange(len(pairs)), pairs[:, 0]], ends[np.arange(len(pairs)), pairs[:, 1]] = -1.0, 1.0
+    stretch = matrix / lengths  # of members, for unit displacements, with the sign turned
+    along = stretch[:, :cables] * (stiffness - densities[:cables])
+    full = np.kron(ends.T @ (densities[:, None] * ends), np.eye(3)) + along @ stretch[:, :cables].T
+    centred = structure.nodes - structure.nodes.mean(axis=0)
+    rigid = np.concatenate([np.tile(np.eye(3), (len(centred), 1)), -cross_matrices(centred).reshape(-1, 3)], axis=1)
+    held = null_space(np.concatenate([stretch[:, cables:].T, rigid.T]), rcond=1e-9)
+    if not held.shape[1]:
+        return float("nan"), np.zeros_like(structure.nodes)
+    values, vectors = np.linalg.eigh(held.T @ full @ held)
+    mode = (held @ vectors[:, 0]).reshape(-1, 3)
+    return float(values[0]), mode / np.linalg.norm(mode, axis=1).max()

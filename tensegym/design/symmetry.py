@@ -35,8 +35,8 @@ def symmetries(design: RobotDesign, tolerance: float = 1e-6) -> list[Symmetry]:
     structure = design.standing
     masses = np.array([design.rod(i).mass for i in range(len(structure.rods))])
     split = np.isin(np.arange(len(structure.rods)), design.flexible_rods)
-    weights = np.empty(len(structure.nodes))
-    weights[structure.rods] = (masses / 2)[:, None]
+    weights = np.zeros(len(structure.nodes))
+    np.add.at(weights, structure.rods, (masses / 2)[:, None])
     nodes = structure.nodes - weights @ structure.nodes / weights.sum()
     triple = list(_independent_triple(nodes))
     images = np.array(list(permutations(range(len(nodes)), 3)))

@@ -12,6 +12,7 @@ from tensegym.compiled import kernel
 from tensegym.physics.substep import substep
 from tensegym.physics.vectors import ALLOCATING
 
+from .joint_step import hold_joints
 from .rod_rotation import turn_rods
 from .split_rod_step import step_split_rods
 
@@ -22,6 +23,8 @@ def engine_substep(model, ground, state, out, dt, implicit):
     engine's step is one of the leapfrog. Of a second half a moment along the pin is left: its force has been carried
     over to the first one."""
     substep(model, ground, state, out, dt, implicit)
+    if len(model.joint_bodies):
+        hold_joints(model, state, dt, out)
     turn_rods(model.body_params, model.other_half, dt, out.rotations, out.velocities, out.wrenches)
     if len(model.pin_bodies):
         step_split_rods(model, state, dt, out)

@@ -39,7 +39,7 @@ def turn_rods(params, other_half, dt, rotations, velocities, wrenches):
         w = velocities[b, 3], velocities[b, 4], velocities[b, 5]
         axis = rotations[b, 0, 2], rotations[b, 1, 2], rotations[b, 2, 2]
         moment = wrenches[b, 3:]
-        new = _leapfrog(w, axis, across, along, dt, moment)
+        new = leapfrog_turn(w, axis, across, along, dt, moment)
         engine = gyroscopic_change(w, axis, across, along, dt)
         change = new[0] - w[0] - engine[0], new[1] - w[1] - engine[1], new[2] - w[2] - engine[2]
         part = (along - across) * dot(change, axis)
@@ -48,7 +48,7 @@ def turn_rods(params, other_half, dt, rotations, velocities, wrenches):
 
 
 @kernel(**KERNEL)
-def _leapfrog(w, axis, across, along, dt, moment):
+def leapfrog_turn(w, axis, across, along, dt, moment):
     """The angular velocity (3,) after a step: I(half a step on) w_new = I(half a step ago) w + dt moment.
 
     With the axis half a step on as axis + s w x axis + c w x (w x axis), solved for w_new with s, c and the last term

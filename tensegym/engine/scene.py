@@ -29,6 +29,8 @@ class Scene(NamedTuple):
     """Straight down [m/s^2]; `World.set_gravity` changes it."""
     ground: Ground | None = None
     """The plane z = 0 or a field of heights, with boxes on it that nothing moves; or none."""
+    joined: tuple[tuple[int, int], ...] = ()
+    """Rows of bodies that do not touch each other, since they share a node."""
 
     @property
     def boxes(self) -> tuple[Box, ...]:

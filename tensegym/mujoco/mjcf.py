@@ -21,11 +21,14 @@ BASE = 1.0  # m; how far the ground of a height field reaches below its lowest p
 
 def scene_mjcf(scene: Scene) -> str:
     """What `MujocoWorld` loads: the integrator whose step the leapfrog is made of, no automatic resets."""
-    bodies = [body_mjcf(body, pose) for body, pose in zip(scene.bodies, scene.poses, strict=True)]
+    names = [f"body_{row}" if any(row in pair for pair in scene.joined) else "" for row in range(len(scene.bodies))]
+    bodies = [body_mjcf(*each) for each in zip(scene.bodies, scene.poses, names, strict=True)]
+    apart = [f'    <exclude body1="{names[a]}" body2="{names[b]}"/>' for a, b in scene.joined]
     asset, ground = ground_mjcf(scene.ground)
     ground += [_box(box) for box in scene.boxes]
     option = option_mjcf(scene.dt, scene.gravity, "Euler", '<flag autoreset="disable"/>')
-    return mjcf("scene", option, scene.friction, asset, [*ground, *bodies])
+    rest = ["  <contact>", *apart, "  </contact>"] if apart else []
+    return mjcf("scene", option, scene.friction, asset, [*ground, *bodies], rest)
 
 
 def option_mjcf(dt: float, gravity: float, integrator: str, flags: str = "") -> str:

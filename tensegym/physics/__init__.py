@@ -8,6 +8,7 @@
     mobility.py        what unit tensions do to the rates of all lengths
     spin.py            the damping of rods that spin about their axes
     split_rods.py      rods of two halves that a pin joins
+    joints.py          ball joints of rods that share nodes, linearised
     drives.py          winch drives
     terrain.py         the ground
     readings.py        velocities, momentum and energies from the arrays

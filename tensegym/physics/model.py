@@ -61,8 +61,16 @@ class Model(NamedTuple):
     """(p, 2) first and second half."""
     pin_params: FloatArray
     """(p, 9) columns PIN_IN_FIRST, PIN_IN_SECOND [m], PIN_AXIS."""
+    joint_bodies: IntArray
+    """(j, 2) rods that a ball joint joins: that of a shared node, another one."""
+    joint_points: FloatArray
+    """(j, 6) the joint in the frame of the first and the second of them [m]."""
+    joint_first: IntArray
+    """(j,) the first joint, up to each itself, that has a rod with it in common."""
+    joined: IntArray
+    """(k,) bodies with a joint or more."""
     node_bodies: IntArray
-    """(n,) body of each node."""
+    """(n,) body of each node, of those that share it the first."""
     node_points: FloatArray
     """(n, 3) each node in its body's frame [m]."""
     foot_radii: FloatArray
@@ -141,6 +149,16 @@ class Out(NamedTuple):
     """(w,) of the stiff cables, a substep ago [N]."""
     new_positions: FloatArray
     """(n, 3) of the nodes [m]."""
+    joint_forces: FloatArray
+    """(j, 3) on the first rod of each joint, against the second [N]."""
+    joint_arms: FloatArray
+    """(j, 4, 3) from both rods' centres to their ends, then to the middle between those [m]."""
+    joint_motion: FloatArray
+    """(b, 6) velocities that the step ends with."""
+    joint_apart: FloatArray
+    """(3 j,) how far apart it leaves the ends [m]."""
+    joint_matrix: FloatArray
+    """(3 j, 3 j) factor of the joints' mobility."""
 
 
 def new_state(model: Model, poses: FloatArray, angles: FloatArray) -> State:
@@ -164,7 +182,7 @@ def new_state(model: Model, poses: FloatArray, angles: FloatArray) -> State:
 def new_out(model: Model) -> Out:
     """Room for a substep's results."""
     bodies, springs, pins = len(model.masses), len(model.spring_bodies), len(model.pin_bodies)
-    padded = BLOCK * -(-springs // BLOCK)
+    padded, joints = BLOCK * -(-springs // BLOCK), len(model.joint_bodies)
     return Out(
         wrenches=np.zeros((bodies, 6)),
         velocities=np.zeros((bodies, 6)),
@@ -181,4 +199,9 @@ def new_out(model: Model) -> Out:
         solve=np.zeros((4, padded)),
         last_tensions=np.zeros(model.driven_count),
         new_positions=np.zeros((len(model.node_bodies), 3)),
+        joint_forces=np.zeros((joints, 3)),
+        joint_arms=np.zeros((joints, 4, 3)),
+        joint_motion=np.zeros((bodies, 6)),
+        joint_apart=np.zeros(3 * joints),
+        joint_matrix=np.zeros((3 * joints, 3 * joints)),
     )

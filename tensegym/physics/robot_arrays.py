@@ -35,7 +35,8 @@ def robot_model(design: RobotDesign) -> Model:
 
     count = len(rods) + (payload is not None) + len(split)
     poses, masses, inertias = np.zeros((count, 7)), np.zeros(count), np.zeros((count, 3))
-    body_of_node = np.empty(len(nodes), dtype=np.int64)
+    body_of_node = np.full(len(nodes), -1)
+    joints, joint_points = [], []
     local_of_node = np.zeros((len(nodes), 3))
     pins, pin_params, springs = [], [], []
     for i, (a, b) in enumerate(rods):
@@ -46,8 +47,12 @@ def robot_model(design: RobotDesign) -> Model:
             masses[i] = kind.mass
             across = kind.transverse_inertia(length)
             inertias[i] = [across, across, kind.axial_inertia]
-            body_of_node[[a, b]] = i
-            local_of_node[a, 2], local_of_node[b, 2] = -length / 2, length / 2
+            for node, z in ((a, -length / 2), (b, length / 2)):
+                if body_of_node[node] < 0:
+                    body_of_node[node], local_of_node[node, 2] = i, z
+                else:
+                    joints.append([body_of_node[node], i])
+                    joint_points.append([*local_of_node[node], 0, 0, z])
             continue
         assert design.flexure is not None
         axis = _pin_axis(along, middles[i] - centre, design.flexure.plane)
@@ -118,6 +123,10 @@ def robot_model(design: RobotDesign) -> Model:
         rest_poses=poses,
         pin_bodies=np.array(pins, dtype=np.int64).reshape(-1, 2),
         pin_params=np.array(pin_params, dtype=float).reshape(-1, 9),
+        joint_bodies=(joined := np.array(joints, dtype=np.int64).reshape(-1, 2)),
+        joint_points=np.array(joint_points, dtype=float).reshape(-1, 6),
+        joint_first=np.array([np.isin(joined, pair).any(axis=1).argmax() for pair in joined], dtype=np.int64),
+        joined=np.unique(joined),
         node_bodies=body_of_node,
         node_points=local_of_node,
         foot_radii=foot_radii,

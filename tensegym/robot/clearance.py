@@ -24,9 +24,11 @@ def check_clear(design: RobotDesign) -> None:
                 f"the payload and rod {names[rod]} overlap by {-gaps[rod]:.3g} m at rest: with Payload.radius = "
                 f"{design.payload.radius:g} m and a rod of radius {tubes[rod]:g} m; make either thinner"
             )
-    least, pair = 0.0, (0, 0)
+    least, pair, joined = 0.0, (0, 0), {(a, b) for a, b in design.structure.joined.tolist()}
     for i in range(len(ends)):
         for j in range(i):
+            if (j, i) in joined:
+                continue
             gap = segment_distance(ends[i], ends[j]) - tubes[i] - tubes[j]
             for foot, other in ((i, j), (j, i)):
                 points = ends[foot][:, None].repeat(2, axis=1)

@@ -12,6 +12,7 @@ from scipy.linalg import eigh
 
 from tensegym.design.design import RobotDesign
 from tensegym.physics.geometry import points_at
+from tensegym.physics.joints import joint_tangent
 from tensegym.physics.model import STIFFNESS
 from tensegym.physics.robot_arrays import robot_model
 from tensegym.physics.step_limit import standing
@@ -30,14 +31,17 @@ def design_modes(design: RobotDesign) -> Modes:
     at = tangent(model, *rest)
     held = model.spring_params[:, STIFFNESS] * (rest.tensions != 0)
     held[model.first_flexure :] = model.spring_params[model.first_flexure :, STIFFNESS]
-    stiffness = at.geometric + at.rates.T @ (held[:, None] * at.rates)
+    joints = joint_tangent(model, at, rest.poses, rest.tensions)
+    stiffness = at.geometric + joints.geometric + at.rates.T @ (held[:, None] * at.rates)
     size = len(stiffness)
     points = np.empty((size, len(model.node_bodies), 3))
     for column in range(size):
         ahead, back = (points_at(moved(model, rest.poses, rest.angles, column, by)[0], model.node_bodies,
                                  model.node_points) for by in (STEP, -STEP))  # fmt: skip
         points[column] = (ahead - back) / (2 * STEP)
-    values, vectors = eigh(stiffness, at.mass)
+    free = joints.free
+    values, vectors = eigh(free.T @ stiffness @ free, free.T @ at.mass @ free)
+    vectors = free @ vectors
     elastic = np.sort(np.argsort(np.abs(values))[6:])
     with np.errstate(invalid="ignore"):
         zero = np.abs(values[elastic]) < 1e-6 * values[-1]

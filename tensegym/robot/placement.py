@@ -20,7 +20,9 @@ def robot_scene(design: RobotDesign, model: Model, dt: float, ground: Ground | N
     bodies = design_bodies(design)
     poses = model.rest_poses[: len(bodies)].copy()
     poses[:, 2] += 10
-    return Scene(bodies, poses, dt, design.friction, design.gravity if ground else 0.0, ground)
+    joined = tuple((a, b) for a, b in design.structure.joined.tolist())
+    gravity = design.gravity if ground else 0.0
+    return Scene(bodies, poses, dt, design.friction, gravity, ground, joined)
 
 
 def reach(model: Model) -> float:

@@ -176,6 +176,15 @@ def in_words(tension: ArrayLike) -> str:
     return f"a tension of {high:g} N in every cable" if low >= high else f"one of {low:g} to {high:g} N in the cables"
 
 
+def shared_compressions(structure: Structure, tension: ArrayLike) -> FloatArray:
+    """(r,) force along each rod that balances tensions [N] of the elastic cables best, positive in compression [N]; for
+    rods that share nodes, on which they divide what cables do there."""
+    matrix, count = equilibrium_matrix(structure), len(structure.cables)
+    pull = matrix[:, :count] @ (np.broadcast_to(tension, count) / structure.lengths(structure.cables))
+    densities = np.linalg.lstsq(matrix[:, count:], pull, rcond=None)[0]
+    return np.asarray(densities * structure.rod_lengths, dtype=float)
+
+
 def check_balance(structure: Structure, tension: ArrayLike) -> None:
     """Raise StructureError, naming the nodes, unless these tensions [N] of the elastic cables balance: (c,), or one of
     all."""

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from tensegym.arrays import FloatArray
 from tensegym.errors import ShapeError, StructureError
 
-from .equilibrium import BALANCE_TOLERANCE, in_words
+from .equilibrium import BALANCE_TOLERANCE, in_words, out_of_balance
 from .rod_balance import Kept, Law, RodBalance, State
 from .structure import Structure
 
@@ -51,6 +51,12 @@ def find_form(structure: Structure, law: Law, payload_tension: float = 0.0, kept
         ShapeError: no shape in balance was found; it names the nodes furthest out.
     """
     tensions = law.base + law.slope * structure.lengths(structure.cables)
+    if len(structure.shared):
+        left = np.abs(out_of_balance(structure, tensions)).max()
+        if payload_tension or left > BALANCE_TOLERANCE * tensions.max(initial=0.0):
+            raise ShapeError(f"node {structure.shared[0] + 1} is on more than one rod: form finding does not move such "
+                             "nodes, and they are out of balance. Keep them, [keep] shape = true")  # fmt: skip
+        return Found(structure, tensions)
     if (tensions <= 0).any():
         raise StructureError(f"tension = {float(tensions.min()):g} N must be above 0 for form finding")
     most = float(tensions.max(initial=0.0)) or 1.0

@@ -1,4 +1,4 @@
-"""Structure: a class-1 tensegrity as arrays, and the presets.
+"""Structure: a tensegrity as arrays, and the presets. Rods that share a node are joined there by a ball joint.
 
 Node numbers start at 0 in arrays and at 1, as in the paper, wherever people read or write them (TOML, messages,
 column names). Lengths in m.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,12 +32,12 @@ _PAPER_STIFF_CABLES = [(3, 7), (4, 9), (5, 10), (6, 2), (11, 8), (12, 1)]  # act
 
 @dataclass(frozen=True)
 class Structure:
-    """Nodes and what joins them. Raises StructureError, naming nodes counted from 1, for what is not of class 1."""
+    """Nodes and what joins them. Raises StructureError, naming nodes counted from 1, for what is no tensegrity."""
 
     nodes: FloatArray
     """(n, 3) coordinates [m]."""
     rods: IntArray
-    """(r, 2) node indices, every node on exactly one rod."""
+    """(r, 2) node indices, every node on one rod (class 1) or more."""
     cables: IntArray
     """(c, 2) node indices of the elastic cables."""
     stiff_cables: IntArray
@@ -48,11 +49,9 @@ class Structure:
         for name in ("rods", "cables", "stiff_cables"):
             object.__setattr__(self, name, _pairs(name, getattr(self, name), nodes))
         uses = np.bincount(self.rods.ravel(), minlength=len(nodes))
-        if (uses != 1).any():
-            bad = int(np.flatnonzero(uses != 1)[0])
-            raise StructureError(
-                f"node {bad + 1} is on {uses[bad]} rods; in a class-1 tensegrity each node ends exactly one rod"
-            )
+        if (uses == 0).any():
+            bad = int(np.flatnonzero(uses == 0)[0])
+            raise StructureError(f"node {bad + 1} is on no rod; every node is the end of one rod or more")
         wrong = np.flatnonzero([length not in ROD_LENGTHS for length in self.rod_lengths.tolist()])
         if len(wrong):
             (a, b), length = self.rods[wrong[0]] + 1, self.rod_lengths[wrong[0]]
@@ -63,6 +62,18 @@ class Structure:
     def rod_lengths(self) -> FloatArray:
         """(r,) [m]"""
         return frozen(self.lengths(self.rods))
+
+    @cached_property
+    def shared(self) -> IntArray:
+        """Nodes that are on more than one rod, ascending."""
+        return frozen(np.flatnonzero(np.bincount(self.rods.ravel()) > 1))
+
+    @cached_property
+    def joined(self) -> IntArray:
+        """(p, 2) rods that have a node in common."""
+        uses = [np.flatnonzero((self.rods == node).any(axis=1)).tolist() for node in self.shared]
+        pairs = sorted({pair for rods in uses for pair in combinations(rods, 2)})
+        return frozen(np.array(pairs, dtype=np.int64).reshape(-1, 2))
 
     def lengths(self, pairs: ArrayLike) -> FloatArray:
         """Distances between the nodes of each pair: (p, 2) -> (p,) [m]."""

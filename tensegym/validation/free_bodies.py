@@ -86,6 +86,7 @@ def _free_model(links: Sequence[Link]) -> Model:
         spring_bodies=np.zeros((0, 2), int), spring_params=np.zeros((0, 9)), rest_lengths=np.zeros(0), first_driven=0,
         driven_count=0, drive_params=np.zeros((0, 14)), body_params=params, other_half=np.full(count, -1),
         masses=masses, inertias=inertias, rest_poses=np.zeros((count, 7)), pin_bodies=np.zeros((0, 2), int),
-        pin_params=np.zeros((0, 9)), node_bodies=np.zeros(0, int), node_points=np.zeros((0, 3)),
-        foot_radii=np.zeros(0),
+        pin_params=np.zeros((0, 9)), joint_bodies=np.zeros((0, 2), int), joint_points=np.zeros((0, 6)),
+        joint_first=np.zeros(0, int), joined=np.zeros(0, int), node_bodies=np.zeros(0, int),
+        node_points=np.zeros((0, 3)), foot_radii=np.zeros(0),
     )  # fmt: skip
