@@ -34,6 +34,7 @@ PLACES = {  # of each shelf: column, row from below, what stands there
     "search": (1.7, 8.8, "over designs"),
     "compare": (2.9, 8.5, "engines side by side"),
     "validation": (2.5, 7.0, "closed forms"),
+    "replay": (1.0, 9.4, "recordings and their page"),
     "view": (1.9, 9.7, "in the browser"),
     "cli": (2.6, 10.2, "commands"),
 }

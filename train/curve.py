@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from tensegym.errors import InputError
-from tensegym.plotting import new_figure, save
+from tensegym.plotting import COLOURS, MARKERS, new_figure, save, thin_legend
 from tensegym.tables import Rows, one_line, read_rows, show
 
 CURVE = "curve.csv"
@@ -38,17 +38,15 @@ def read_curve(path: Path) -> list[dict[str, float]]:
 
 def draw_curve(runs: Mapping[str, Path], out: Path) -> None:
     """One line a run: median speed of the training episodes against environment steps; slip share below it."""
-    figure, (top, bottom) = new_figure(2, size=(7, 6), layout="tight", sharex=True)
-    for name, path in runs.items():
+    figure, (top, bottom) = new_figure(2, size=(7, 6), sharex=True)
+    for n, (name, path) in enumerate(runs.items()):
         rows = read_curve(path)
         steps = [row["steps"] / 1000 for row in rows]
-        top.plot(steps, [row["speed_lps"] for row in rows], label=name)
-        bottom.plot(steps, [row["slip_share"] for row in rows], label=name)
-    top.set_ylabel("speed along heading [rod lengths/s]")
-    bottom.set_ylabel("slip share [-]")
-    bottom.set_xlabel("environment steps [thousand]")
+        look = {"color": COLOURS[n % len(COLOURS)], "marker": MARKERS[n % len(MARKERS)], "markevery": 5, "ms": 4}
+        top.plot(steps, [row["speed_lps"] for row in rows], label=name, **look)
+        bottom.plot(steps, [row["slip_share"] for row in rows], **look)
+    top.set_ylabel("speed along the heading [rod lengths/s]")
+    bottom.set(ylabel="slip, share of the way", xlabel="environment steps [thousand]")
     top.set_title("Median over the episodes of each chunk, exploration noise on")
-    for axis in (top, bottom):
-        axis.grid(alpha=0.3)
-        axis.legend()
+    thin_legend(top)
     save(figure, out, dpi=120)
