@@ -16,27 +16,27 @@ from tests.test_layers import OWN, SHELVES, shelf
 HERE = Path(__file__).parent
 
 PLACES = {  # of each shelf: column, row from below, what stands there
-    "structure": (0.0, 1.0, "a tensegrity at rest"),
-    "structures": (-0.6, 1.9, "builders of them"),
-    "flexure": (1.2, 1.0, "hinges, FEM, joint models"),
-    "design": (0.5, 2.0, "a robot as data"),
-    "exchange": (-0.6, 2.9, "files of other tools"),
-    "physics": (0.5, 3.0, "the compiled substep"),
-    "engine": (1.4, 3.8, "what a robot needs of one"),
-    "bullet": (1.9, 4.7, "PyBullet"),
-    "mujoco": (3.1, 4.7, "MuJoCo"),
-    "flexible": (2.6, 5.8, "flexures in any URDF"),
-    "robot": (1.2, 5.6, "a design in an engine"),
-    "control": (0.6, 6.5, "what moves a robot"),
-    "tasks": (1.4, 7.4, "what it is to do"),
-    "envs": (0.5, 8.3, "Gymnasium"),
-    "train": (0.2, 9.3, "PPO"),
-    "search": (1.7, 8.8, "over designs"),
-    "compare": (2.9, 8.5, "engines side by side"),
-    "validation": (2.5, 7.0, "closed forms"),
-    "replay": (1.0, 9.4, "recordings and their page"),
-    "view": (1.9, 9.7, "in the browser"),
-    "cli": (2.6, 10.2, "commands"),
+    "structure": (0.3, 1.0, "a tensegrity at rest"),
+    "structures": (0.1, 1.9, "builders of them"),
+    "flexure": (2.4, 1.0, "hinges, FEM, joint models"),
+    "design": (1.4, 1.9, "a robot as data"),
+    "exchange": (0.1, 2.8, "files of other tools"),
+    "physics": (1.4, 2.8, "the compiled substep"),
+    "engine": (1.7, 3.7, "what a robot needs of one"),
+    "bullet": (1.7, 4.6, "PyBullet"),
+    "mujoco": (3.0, 4.6, "MuJoCo"),
+    "flexible": (3.0, 5.5, "flexures in any URDF"),
+    "robot": (1.2, 5.5, "a design in an engine"),
+    "control": (0.4, 6.4, "what moves a robot"),
+    "tasks": (1.2, 7.2, "what it is to do"),
+    "envs": (0.4, 8.0, "Gymnasium"),
+    "train": (0.1, 9.6, "PPO"),
+    "search": (1.3, 9.6, "over designs"),
+    "compare": (2.9, 8.0, "engines side by side"),
+    "validation": (3.0, 6.4, "closed forms"),
+    "replay": (1.6, 8.8, "recordings and their page"),
+    "view": (2.5, 9.9, "in the browser"),
+    "cli": (3.0, 10.6, "commands"),
 }
 TOOLS = ("errors", "arrays", "files", "compiled", "tables", "report", "plotting", "progress", "processes")
 WALKS = {  # the shelves that a walk enters, in order, as docs/architecture.md tells them
@@ -102,9 +102,9 @@ def draw_shelves(axis: Any) -> None:
             x, y = x - 0.42 + 0.28 * row, y + HIGH / 2
             axis.plot(x, y, "o", color=colour, markersize=13, zorder=5)
             axis.text(x, y - 0.01, str(step), color="white", ha="center", va="center", fontsize=8, zorder=6)
-        axis.plot(-0.42, 10.7 - 0.27 * row, "o", color=colour, markersize=13)
-        axis.text(-0.27, 10.7 - 0.27 * row, title, va="center", fontsize=9)
-    axis.set(xlim=(-0.6, 3.7), ylim=(-0.4, 10.9), title="Shelves: an arrow is an import, a number is a step of a walk")
+        axis.plot(-0.42, 11.15 - 0.27 * row, "o", color=colour, markersize=13)
+        axis.text(-0.27, 11.15 - 0.27 * row, title, va="center", fontsize=9)
+    axis.set(xlim=(-0.6, 3.7), ylim=(-0.4, 11.4), title="Shelves: an arrow is an import, a number is a step of a walk")
 
 
 def draw_action(axis: Any) -> None:
