@@ -51,6 +51,8 @@ class Controls:
             _on_click(gui.add_button("restart"), lambda: self._ask(lambda live: live.choose(self.choice)))
             _on_update(gui.add_dropdown("speed", tuple(SPEEDS), initial_value="1"), self._set_speed)
             self._face = gui.add_dropdown("start face", tuple(hull_faces(stage.design.standing).names()))
+            self._record = gui.add_button("record", hint="a replay: one file, which any browser plays")
+            self._record.on_click(self._take_record)
         with gui.add_folder("Robot"):
             options = drivers()
             options += [] if choice.driver in options else [choice.driver]
@@ -96,6 +98,14 @@ class Controls:
     def _toggle(self) -> None:
         self.playing = not self.playing
         self._play.label = "pause" if self.playing else "play"
+
+    def _take_record(self, event: Any) -> None:
+        if self._record.label == "record":
+            self._ask(lambda live: live.tell("record"))
+            self._record.label = "end and download the replay"
+        else:
+            self._ask(lambda live: live.give_replay(event.client))
+            self._record.label = "record"
 
     def _set_speed(self, name: str) -> None:
         self.speed = SPEEDS[name]

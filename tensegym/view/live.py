@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import tempfile
 import threading
 import time
 from collections import deque
+from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
@@ -13,6 +15,7 @@ import numpy as np
 from tensegym.errors import TensegymError
 from tensegym.physics.robot_arrays import robot_model
 from tensegym.processes import Worker
+from tensegym.replay import write_replay
 
 from .choice import Choice
 from .controls import Controls, Request
@@ -33,12 +36,17 @@ class Live:
     The worker is told the next control step before the last one is shown, so that it computes while the page is drawn;
     what users ask for waits until it has answered.
 
+    Attributes:
+        requests: what users asked for and was not served yet.
+        frame: that was shown last; ``shown`` counts them.
+
     Raises: as `Session`.
     """
 
     def __init__(self, page: Page, choice: Choice) -> None:
         self.page, self.worker = page, Worker(Session, choice)
         self.requests: SimpleQueue[Request] = SimpleQueue()
+        self.shown = 0
         self._ended, self._returned = threading.Event(), threading.Event()
         try:
             self.worker.started()
@@ -80,7 +88,7 @@ class Live:
         self.controls.dress(self.scene)
         self._wound = robot_model(stage.design).driven
         self._frames: deque[Frame] = deque()
-        self._told, self._shown, self._since = False, 0, time.perf_counter()
+        self._told, self._since = False, time.perf_counter()
         self._show(self._asked("frame"))
 
     # -- what a page asks ---------------------------------------------------------------------------------------------
@@ -106,6 +114,14 @@ class Live:
         self._frames.extend(self.tell("step"))
         while self._frames:
             self._show(self._frames.popleft())
+
+    def give_replay(self, client: Any) -> None:
+        """Let a browser download what was recorded."""
+        recording = self.tell("recorded")
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "replay.html")
+            write_replay(recording, path)
+            client.send_file_download(path.name, path.read_bytes())
 
     def _clicked(self, event: Any) -> None:
         place = self.surroundings.place_of(np.array(event.ray_origin), np.array(event.ray_direction))
@@ -158,9 +174,10 @@ class Live:
             self.surroundings.draw(frame, self.scene.centre)
             if self.controls.follow.value:
                 self.surroundings.follow(self.scene.centre)
+        self.frame = frame
         self.plots.add(frame, self._wound)
-        self._shown += 1
-        if self._shown % _BESIDE == 0:
+        self.shown += 1
+        if self.shown % _BESIDE == 0:
             now = time.perf_counter()
             self.plots.draw()
             self.controls.show(frame, _BESIDE / (now - self._since))

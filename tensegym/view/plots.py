@@ -23,7 +23,8 @@ class Plots:
     """Three plots of the drives and their cables, in a panel of their own."""
 
     def __init__(self, page: Page, design: RobotDesign) -> None:
-        drive, count = design.drive, len(design.structure.stiff_cables)
+        count = len(design.structure.stiff_cables)
+        drive = max(design.each_drive, key=lambda each: each.torque_limit, default=design.drive)
         torque = drive.torque_limit
         self._rows: deque[FloatArray] = deque(maxlen=_MOST)
         self._panel = page.gui.add_panel()

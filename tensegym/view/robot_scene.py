@@ -11,7 +11,7 @@ from tensegym.arrays import FloatArray
 from tensegym.design.solids import Solid, middles, solids
 from tensegym.physics.geometry import points_at
 from tensegym.physics.robot_arrays import robot_model
-from tensegym.robot.rendering import tension_colour
+from tensegym.robot.sight import SLACK_BELOW, cable_ends, tension_colours
 from tensegym.structure.faces import hull_faces
 
 from .frame import Frame, Stage
@@ -48,8 +48,6 @@ class RobotScene:
         self.root = page.scene.add_frame(name, show_axes=False)
         self._batches = {kind: self._batch(page, f"{name}/{kind}", kind) for kind in UNIT if self._of(kind)}
         cables = self._model.first_flexure
-        self._bodies = self._model.spring_bodies[:cables].ravel()
-        self._points = self._model.spring_params[:cables, :6].reshape(-1, 3)
         self._wound = np.zeros(cables, dtype=bool)
         self._wound[self._model.driven] = True
         self._cables = _batched(page, f"{name}/cables", "cylinder", np.full((cables, 3), 1e-3),
@@ -79,7 +77,7 @@ class RobotScene:
         for kind, batch in self._batches.items():
             of = self._of(kind)
             batch.batched_positions, batch.batched_wxyzs = places[of], turns[of]
-        self._draw_cables(points_at(poses, self._bodies, self._points).reshape(-1, 2, 3), frame.tensions)
+        self._draw_cables(cable_ends(self._model, poses), frame.tensions)
         nodes = points_at(poses, self._model.node_bodies, self._model.node_points)
         centre = self._model.masses @ poses[:, :3] / self._model.masses.sum()
         corners = nodes[self._faces[frame.face]]
@@ -96,11 +94,11 @@ class RobotScene:
     def _draw_cables(self, ends: FloatArray, tensions: FloatArray) -> None:
         spans = ends[:, 1] - ends[:, 0]
         lengths = np.linalg.norm(spans, axis=1)
-        radii = self._length * np.where(tensions <= 0, _SLACK, np.where(self._wound, _WOUND, _TAUT))
+        radii = self._length * np.where(tensions <= SLACK_BELOW, _SLACK, np.where(self._wound, _WOUND, _TAUT))
         self._cables.batched_positions = ends.mean(axis=1)
         self._cables.batched_wxyzs = _turns_of_z(spans / np.maximum(lengths, 1e-12)[:, None])
         self._cables.batched_scales = np.column_stack([radii, radii, lengths])
-        self._cables.batched_colors = np.array([tension_colour(tension) for tension in tensions], dtype=np.uint8)
+        self._cables.batched_colors = tension_colours(tensions).astype(np.uint8)
 
     def show_support(self, on: bool) -> None:
         """Support triangle, centre of mass and its projection."""

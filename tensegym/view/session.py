@@ -10,6 +10,7 @@ from tensegym.arrays import FloatArray
 from tensegym.control.controller import Controller
 from tensegym.control.table import make_controller
 from tensegym.physics.drives import COMMAND, CURRENT, LOAD_TORQUE
+from tensegym.replay import Recorder, Recording
 from tensegym.tasks.episode import Episode, Watcher
 from tensegym.tasks.goal import Heading, Place
 from tensegym.tasks.path import Path
@@ -50,6 +51,8 @@ class Session:
         if controller and not episode.diverged:
             controller.begin(episode.robot, _SEED)
         self.choice, self._episode, self._controller = choice, episode, controller
+        self.recorder: Recorder | None = None
+        """What keeps frames, while it is asked to."""
         self._angles: FloatArray = np.zeros(len(episode.robot.drives))
 
     def close(self) -> None:
@@ -92,6 +95,16 @@ class Session:
         episode.goal = goal
         episode.bearing = goal.bearing(episode.robot)
         episode.meter.turn(episode.bearing.direction)
+
+    def record(self) -> None:
+        """Keep what it does from now on."""
+        self.recorder = Recorder(f"{self._episode.robot.design.name}, {self.choice.driver}", PERIOD)
+        self.recorder(self._episode)
+
+    def recorded(self) -> Recording:
+        """What was kept; it keeps no more. Raises SimulationError where nothing was."""
+        recorder, self.recorder = self.recorder or Recorder(), None
+        return recorder.recording()
 
     # -- what it does -------------------------------------------------------------------------------------------------
 
@@ -149,6 +162,8 @@ class _Seen:
 
     def __call__(self, episode: Episode) -> None:
         self.frames.append(self._session.frame())
+        if self._session.recorder:
+            self._session.recorder(episode)
 
 
 def _start(face: int) -> dict[str, float]:

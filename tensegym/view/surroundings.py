@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from tensegym.arrays import FloatArray
 from tensegym.physics.terrain import Ground
+from tensegym.robot.sight import upward
 
 from .frame import Frame, Stage
 from .page import Page
@@ -39,6 +40,10 @@ class Surroundings:
                 fade_distance=25 * length, cell_color=(215, 215, 215), section_color=(170, 170, 170),
                 plane_color=(248, 248, 246), plane_opacity=0.9,
             )  # fmt: skip
+        for number, box in enumerate(stage.ground.obstacles if stage.ground else ()):
+            x, y, z, w = box.turn
+            page.scene.add_box(f"/world/box {number}", _EARTH, tuple(2 * half for half in box.half), wxyz=(w, x, y, z),
+                               position=box.centre)  # fmt: skip
         if len(stage.path) > 1:
             points = np.column_stack([stage.path, np.full(len(stage.path), 0.005)])
             page.scene.add_line_segments("/world/path", np.stack([points[:-1], points[1:]], axis=1), _PATH,
@@ -87,8 +92,7 @@ def light(page: Page) -> None:
 
 def tilt(gravity: FloatArray) -> Rotation:
     """From a robot's world to the page, in which gravity (3,) points down; the shortest turn."""
-    size = np.linalg.norm(gravity)
-    up = -gravity / size if size else np.array([0.0, 0.0, 1.0])
+    up = upward(gravity)
     axis = np.cross(up, [0.0, 0.0, 1.0])
     sine = float(np.linalg.norm(axis))
     return Rotation.from_rotvec(axis / sine * np.arctan2(sine, up[2]) if sine > 1e-12 else np.zeros(3))

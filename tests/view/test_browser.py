@@ -10,9 +10,15 @@ import pytest
 from tests.browser import PATIENCE, Tab, chromium
 
 pytest.importorskip("viser", reason="no viser here: pip install '.[view]'")
+from tensegym.flexure.hinge import preset
+from tensegym.flexure.models.joint_fit import fit_joint
 from tensegym.view.choice import Choice
+from tensegym.view.hinge_view import FEM, HingeView
 from tensegym.view.live import Live
 from tensegym.view.page import Page
+from tensegym.view.player import Player
+
+HINGE = preset("leaf-spring")
 
 
 @pytest.fixture(scope="module")
@@ -93,3 +99,54 @@ def test_time_stops_goes_on_by_steps_and_begins_anew(live, tab):
     assert after == pytest.approx(before + 0.1)  # a slider's command is held so long
     tab.page.get_by_role("button", name="restart").click()
     frame_when(live, lambda frame: frame.time < before)
+
+
+@pytest.fixture
+def opened(browser):
+    """Opens what is to run in a page of its own, and a browser on it."""
+    closed = []
+
+    def open_view(make):
+        page = Page("tensegym", port=0)
+        view = make(page)
+        threading.Thread(target=view.run, daemon=True).start()
+        tab = Tab(browser, page.url)
+        closed.append((page, view, tab))
+        tab.page.get_by_role("slider").first.wait_for()
+        return view, tab
+
+    yield open_view
+    for page, view, tab in closed:
+        tab.close()
+        view.end()
+        page.stop()
+        assert tab.complaints == tab.abroad == []
+
+
+def until(holds):
+    end = time.monotonic() + PATIENCE / 1000
+    while not holds():
+        assert time.monotonic() < end, "it never held"
+        time.sleep(0.05)
+
+
+def test_a_replay_plays_and_scrubs(opened, recording):
+    player, tab = opened(lambda page: Player(page, [recording, recording], ["one", "two"]))
+    until(lambda: player.time > 0)
+    tab.page.get_by_role("slider").first.focus()
+    tab.page.keyboard.press("End")
+    until(lambda: player.time == player.slider.max)
+    assert not player.playing
+    tab.page.keyboard.press("Home")
+    until(lambda: player.time == 0)
+    tab.page.get_by_text("two").first.wait_for()
+
+
+def test_a_hinge_bends_under_its_sliders(opened):
+    joint = fit_joint(HINGE, held_out=0)
+    view, tab = opened(lambda page: HingeView(page, HINGE, joint))
+    assert view.answers[FEM].theta == pytest.approx(0, abs=1e-12)
+    tab.page.get_by_role("slider").nth(2).focus()
+    tab.page.keyboard.press("End")
+    until(lambda: view.answers[FEM].theta > 0.9 * joint.box.max_angle)
+    tab.page.get_by_text("error [deg]").wait_for()

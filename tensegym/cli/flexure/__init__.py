@@ -8,5 +8,6 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "guide": ("tensegym.cli.flexure.guide:Guide", "a parallelogram by FEM, beam constraint model, pseudo-rigid body"),
     "track": ("tensegym.cli.flexure.track:Track", "pictures of a stand in, angle and position out, as CSV"),
     "stand": ("tensegym.cli.flexure.stand:Stand", "the paper's test stand in PyBullet: pull, track, fit, let go"),
+    "view": ("tensegym.cli.flexure.view:View", "a hinge bends under sliders, in the browser: FEM beside the models"),
     "solve": ("tensegym.cli.flexure.solve:Solve", "loads in, poses out, by any of the models"),
 }
