@@ -8,6 +8,9 @@ Three things, one after another in each round, of the default robot rolled by th
 * drawn: the same under a page that shows it thirty times a second, with a viewer connected that reads every message but
   draws nothing (a browser without a GPU would take the cores that the simulation is measured on);
 * real time: the page at speed 1: how often the scene changed a second, and the robot's time over the clock's.
+
+The first two count the robot's seconds for a second of the clock, and for a second of the processor that the simulating
+process was given: on a machine that others use too only the second one says what the page costs.
 """
 
 from __future__ import annotations
@@ -39,16 +42,23 @@ from tensegym.view.session import Session
 WALKER = Choice("walker")
 
 
-def alone(seconds: float) -> float:
-    """Robot's seconds a second, nothing drawn."""
+def processor(worker: Worker) -> float:
+    """Processor time of a worker so far [s], on Linux."""
+    fields = Path(f"/proc/{worker.process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def alone(seconds: float) -> tuple[float, float]:
+    """Robot's seconds a second of the clock, and of the processor, nothing drawn."""
     worker = Worker(Session, WALKER)
     worker.started()
     worker.tell("run", 0.5)
-    before = worker.answer()[-1].time
+    before, start, used = worker.answer()[-1].time, time.perf_counter(), processor(worker)
     worker.tell("run", seconds)
-    rate = (worker.answer()[-1].time - before) / seconds
+    made = worker.answer()[-1].time - before
+    rates = made / (time.perf_counter() - start), made / (processor(worker) - used)
     worker.close()
-    return rate
+    return rates
 
 
 @contextmanager
@@ -64,13 +74,13 @@ def shown() -> Iterator[Live]:
             live.end()
 
 
-def watched(live: Live, seconds: float) -> tuple[float, float]:
-    """Robot's seconds a second, and updates of the scene a second."""
+def watched(live: Live, seconds: float) -> tuple[float, float, float]:
+    """Robot's seconds a second of the clock, and of the processor, and updates of the scene a second."""
     time.sleep(0.5)
-    start, time_before, shown_before = time.perf_counter(), live.frame.time, live.shown
+    start, time_before, shown_before, used = time.perf_counter(), live.frame.time, live.shown, processor(live.worker)
     time.sleep(seconds)
-    passed = time.perf_counter() - start
-    return (live.frame.time - time_before) / passed, (live.shown - shown_before) / passed
+    passed, made = time.perf_counter() - start, live.frame.time - time_before
+    return made / passed, made / (processor(live.worker) - used), (live.shown - shown_before) / passed
 
 
 def main() -> None:
@@ -81,14 +91,15 @@ def main() -> None:
     given = parser.parse_args()
     rows = []
     for _ in range(given.rounds):
-        free = alone(given.seconds)
+        free, free_used = alone(given.seconds)
         with shown() as live:
             live.controls.speed = float("inf")
-            drawn, drawn_updates = watched(live, given.seconds)
+            drawn, drawn_used, _ = watched(live, given.seconds)
             live.controls.speed = 1.0
-            real, updates = watched(live, given.seconds)
-        rows.append([free, drawn, drawn / free, drawn_updates, real, updates])
-    header = ["alone [s/s]", "drawn [s/s]", "drawn / alone", "updates/s at most", "real time [s/s]", "updates/s"]
+            real, _, updates = watched(live, given.seconds)
+        rows.append([free, drawn, drawn / free, free_used, drawn_used, drawn_used / free_used, real, updates])
+    header = ["alone, clock", "drawn, clock", "ratio", "alone, processor", "drawn, processor", "ratio ", "real time",
+              "updates/s"]  # fmt: skip
     middle = [median(column) for column in zip(*rows, strict=True)]
     print(table(["", *header], [*([f"round {n}", *row] for n, row in enumerate(rows, 1)), ["median", *middle]]))
     if given.out:

@@ -47,8 +47,8 @@ class HingeScene:
         }  # fmt: skip
         page.scene.add_grid("/plane", width=4, height=4, cell_size=0.1, section_size=1.0, cell_color=(225, 225, 225),
                             section_color=(190, 190, 190), position=(0.5, 0.0, -0.5 * self._width(0)))  # fmt: skip
-        page.initial_camera.position = (0.6, -1.4, 2.0)
-        page.initial_camera.look_at = (0.6, 0.0, 0.0)
+        page.initial_camera.position = (0.65, -0.5, 1.75)
+        page.initial_camera.look_at = (0.65, 0.1, 0.0)
 
     def _width(self, leaf: int) -> float:
         return self._hinge.leaves[leaf].width * self._scale

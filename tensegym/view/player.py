@@ -95,7 +95,7 @@ class Player:
         self._shown += 1
         if self._shown % _BESIDE == 0 or not self.playing:
             self.plots.draw()
-            self.slider.value = float(min(seconds, self.slider.max))
+            self.slider.value = round(min(seconds, self.slider.max), 3)
 
     def run(self) -> None:
         """Until it is interrupted, or told to `end`; a recording that is over begins again."""
