@@ -45,7 +45,7 @@ class View:
     """Address to listen on: this machine alone, unless another one is given. Whoever reaches it may drive the robot."""
 
     def run(self) -> Report:
-        import viser  # noqa: F401  # without it nothing is simulated first
+        import tensegym.view.page  # noqa: F401  # where there is no viser, nothing is simulated first
 
         given = [f.name for f in fields(self) if f.name in _LIVE and getattr(self, f.name) != f.default]
         if self.replay is not None and self.study is not None:

@@ -72,8 +72,8 @@ class HingeView:
             return
         self._shown = load
         solution = fem.apply_wrench(self.hinge, load, elements=self.elements, keep_nodes=True)
-        pose = [*solution.theta.tolist(), *solution.tip[0].tolist(), *solution.energy.tolist()]
-        found = Answer(*pose, solution.reason(0))
+        (x, y), energy = solution.tip[0].tolist(), float(solution.energy[0])
+        found = Answer(float(solution.theta[0]), x, y, energy, solution.reason(0))
         self.answers = {FEM: found} | {
             name: solve_model(model, self.joint.box, load[None])[0] for name, model in self.joint.models.items()
         }

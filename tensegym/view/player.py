@@ -65,10 +65,15 @@ class Player:
         self._follow = page.gui.add_checkbox("follow the robot", len(self.scenes) == 1)
         support = page.gui.add_checkbox("support and centre of mass", True)
         numbers = page.gui.add_checkbox("node numbers", False)
-        support.on_update(lambda _: [scene.show_support(support.value) for scene in self.scenes])
-        numbers.on_update(lambda _: [scene.show_numbers(numbers.value) for scene in self.scenes])
+        for tick in (support, numbers):
+            tick.on_update(lambda _: self._dress(support.value, numbers.value))
         self.plots = Plots(page, first.design)
         self.playing, self.time, self._wanted, self._shown = True, 0.0, 0.0, 0
+
+    def _dress(self, support: bool, numbers: bool) -> None:
+        for scene in self.scenes:
+            scene.show_support(support)
+            scene.show_numbers(numbers)
 
     def _toggle(self) -> None:
         self.playing = not self.playing
