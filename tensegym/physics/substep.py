@@ -46,8 +46,10 @@ def substep(model, ground, state, out, dt, implicit):
     tension_wrenches(model.spring_bodies, out, tensions)
     damp_spins(model.body_params, state.poses, state.last_poses, dt, out.rotations, out.velocities, out.wrenches)
     _wind(model, state, out, dt)
+    peak = state.totals[PEAK_TENSION]
     for c in range(len(tensions) - len(model.pin_bodies)):
-        state.totals[PEAK_TENSION] = max(state.totals[PEAK_TENSION], tensions[c])
+        peak = max(peak, tensions[c])
+    state.totals[PEAK_TENSION] = peak
     _add_paths(model, ground, state, out)
     poses, last_poses = state.poses, state.last_poses
     for b in range(len(poses)):
