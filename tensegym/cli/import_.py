@@ -30,7 +30,7 @@ class Import:
     file: Annotated[Path, tyro.conf.Positional]
     """NTRT's YAML, or the CSV of the nodes."""
     units: str | None = None
-    """Unit of length in the file: m, dm, cm, mm, in. It must be given, as no such file says it."""
+    """Unit of length in the file: m, dm, cm, mm, in, or a number of metres. It must be given: no such file says it."""
     out: Path | None = None
     """TOML file to write."""
     rods: Path | None = None

@@ -6,7 +6,8 @@
     gain = 1.0                # and the fields of tensegym.control.cpg.Cpg
 
     kind = "walker"           # the open-loop walker
-    tips = ""                 # a file of `tensegym step --all-faces`; default: the default design's; "own": made now
+    tips = ""                 # a file of `tensegym step --all-faces`, or three_rod_robot; default: the six-rod's;
+                              # "own": made now
     depth = 1.0               # and the fields of tensegym.control.walker.WalkerSettings
 
     kind = "planner"          # A* over the table of tips; as the walker, and
@@ -126,8 +127,8 @@ def _parsed(table: Mapping[str, Any]) -> tuple[str, Any]:
 
 @cache
 def _tips(path: str) -> list[Tip]:
-    """A table of tips, read once a process; the default design's where the path is empty."""
-    return load_table(Path(path) if path else shipped("walker") / "tips.json")
+    """A table of tips, read once a process; by the name of one that ships, the default design's where that is empty."""
+    return load_table(Path(path) if Path(path).suffix else shipped("walker") / f"{path or 'tips'}.json")
 
 
 @cache

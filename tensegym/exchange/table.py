@@ -14,6 +14,7 @@ from tensegym.tables import one_line
 
 UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 """Lengths [m] of what a file may be in."""
+SHORTEST, LONGEST = 1e-9, 1e6
 SAME = 1e-6  # of the whole: nodes no farther apart are one
 
 
@@ -27,13 +28,19 @@ class Imported(NamedTuple):
 
 
 def length_of(unit: str | None) -> float:
-    """Of a unit by its name [m]. Raises InputError for none and for an unknown one."""
+    """Of a unit by its name, or of a number of metres as a text [m]. Raises InputError for none and for another."""
     names = ", ".join(UNITS)
     if not unit:
-        raise InputError(f"the file does not say its unit of length; give units, one of {names}")
-    if unit not in UNITS:
-        raise InputError(one_line(f"units = {unit!r} is not one of {names}"))
-    return UNITS[unit]
+        raise InputError(f"the file does not say its unit of length; give units, one of {names}, or its length in m")
+    try:
+        length = UNITS[unit] if unit in UNITS else float(unit)
+    except ValueError:
+        length = 0.0
+    if not SHORTEST <= length <= LONGEST:
+        raise InputError(one_line(
+            f"units = {unit!r} is not one of {names}, nor a length of {SHORTEST:g} to {LONGEST:g} m"
+        ))
+    return length
 
 
 class Merged(NamedTuple):

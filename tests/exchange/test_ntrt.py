@@ -56,6 +56,12 @@ def test_round_trips(tmp_path, name, units):
     assert not mine
 
 
+def test_a_unit_may_be_a_number_of_metres():
+    """As where a model is drawn thirty times its size."""
+    first, second = (read_ntrt(CASES / "prism3.yaml", units).table["structure"]["nodes"] for units in ("0.1", "dm"))
+    assert first == second
+
+
 def test_the_groups_of_a_model_are_those_of_its_builders():
     design = design_from_dict(read_ntrt(CASES / "prism4.yaml", "dm").table)
     assert {group.name: len(group.pairs) for group in design.cables} == {"around": 8, "upright": 4}
@@ -144,7 +150,9 @@ def test_what_is_no_model_is_refused_by_name(tmp_path, changes, reason):
         read_ntrt(written(tmp_path, **small(**changes)), "dm")
 
 
-@pytest.mark.parametrize(("units", "reason"), [(None, "give units, one of m, dm"), ("ell", "'ell' is not one of m")])
+@pytest.mark.parametrize(("units", "reason"), [
+    (None, "give units, one of m, dm"), ("ell", "'ell' is not one of m"), ("-1", "nor a length"),
+])  # fmt: skip
 def test_units_are_asked_for(units, reason):
     with pytest.raises(InputError, match=reason):
         read_ntrt(CASES / "prism3.yaml", units)
