@@ -15,6 +15,7 @@ import pytest
 
 from tensegym.errors import DesignError, InputError, SimulationError
 from tensegym.processes import Pool, Worker, WorkerDied, call_all, cores, process_map
+from tests.test_progress import Terminal
 
 
 def square(item):
@@ -130,9 +131,10 @@ def test_a_worker_counts_one_core_as_its_own():
         assert list(pool.map(asks_cores, range(3))) == [1, 1, 1]
 
 
-def test_the_bar_shows_on_standard_error(capfd):
+def test_the_bar_shows_on_a_terminal(monkeypatch):
+    monkeypatch.setattr(sys, "stderr", Terminal())
     assert len(list(process_map(square, range(4), 2, bar="squares", unit="square"))) == 4
-    assert "squares: 100%" in capfd.readouterr().err
+    assert "squares: 100%" in sys.stderr.getvalue()
 
 
 @pytest.fixture

@@ -74,7 +74,7 @@ def test_every_field_has_its_default():
 @pytest.mark.parametrize(
     ("table", "words"),
     [
-        ({"kind": "runner"}, "kind = 'runner' is not one of cpg, walker, planner, policy, random"),
+        ({"kind": "runner"}, "kind = 'runner' is not one of cpg, walker, planner, stepper, policy, random"),
         ({"kind": "walker", "gain": 1.0}, "unknown field 'gain' in controller; one of depth, pull_time, release_time"),
         ({"depth": 1.0}, "unknown field 'depth' in controller"),
         ({"kind": "walker", "depth": 1.2}, r"controller.depth = 1.2 is outside \(0, 1\]"),
