@@ -1,7 +1,9 @@
 """One root exception; every error is also the builtin a caller would expect."""
 
+import re
 
 LONGEST = 300  # characters of a message, whatever stood in the input that it names
+LONG_WORD = re.compile(r"(?<!\S)\S+(?=\S{40})")  # what stands before the last 40 characters of a word, such as a path
 
 
 class TensegymError(Exception):
@@ -12,8 +14,10 @@ class TensegymError(Exception):
 
 
 def one_line(text: str) -> str:
-    """A message without line breaks, the middle of a long one left out."""
+    """A message without line breaks; a long one leaves out the start of long words (a path), then its middle."""
     text = " ".join(text.split())
+    if len(text) > LONGEST:
+        text = LONG_WORD.sub("...", text)
     return text if len(text) <= LONGEST else f"{text[: LONGEST - 105]} ... {text[-100:]}"
 
 
