@@ -105,6 +105,5 @@ def _start_chunk(model: PPO, env: VecNormalize, config: TrainConfig, seed: int, 
     set_random_seed(stream)
     env.seed(stream)
     model._last_obs = None  # makes learn() reset the environments
-    left = 1 - steps / config.steps
-    model.learning_rate = config.final_learning_rate + left * (config.learning_rate - config.final_learning_rate)
+    model.learning_rate = config.learning_rate_at(steps)
     model._setup_lr_schedule()
