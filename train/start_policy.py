@@ -26,11 +26,12 @@ def check_start(config: TrainConfig, observed: Any, driven: Any) -> None:
     kinds = policy_env(config.start).get("observation", "full"), config.env.get("observation", "full")
     saved = read_policy(policy_folder(config.start))
     own, hidden = (saved.observation_bounds.shape[1:], saved.action_bounds.shape[1:]), saved.hidden
-    if kinds[0] != kinds[1] or own[0] > observed or own[1] != driven or hidden != list(config.hidden):
+    goes_on = f"{kinds[1]}-".startswith(f"{kinds[0]}-") and own[0] <= observed
+    if not goes_on or own[1] != driven or hidden != list(config.hidden):
         raise InputError(
             f"training config: start = {config.start!r} has observation {kinds[0]} {own[0]}, actions {own[1]} and "
             f"hidden {hidden}; this training has {kinds[1]} {observed}, {driven} and {list(config.hidden)}. Only the "
-            "observation may be longer"
+            "observation may be longer, such as onboard-memory for onboard"
         )
 
 

@@ -256,6 +256,19 @@ def test_a_training_begins_as_the_policy_it_starts_from(tmp_path, tiny_config, t
     np.testing.assert_allclose(after(other), after(observation), atol=1e-9)
 
 
+def test_a_training_with_a_memory_begins_as_one_without(tmp_path, tiny_config, tiny_run, cli):
+    config = started(tmp_path, tiny_config, tiny_run, steps=STEPS, learning_rate=1e-12, final_learning_rate=1e-12,
+                     env={"observation": "onboard-memory"})  # fmt: skip
+    assert cli("train", "--config", config, "--out", tmp_path / "run")[0] == 0
+    before, after = load_policy(tiny_run), load_policy(tmp_path / "run")
+    with RollingEnv(**yaml.safe_load(config.read_text())["env"]) as env:
+        env.reset(seed=1)
+        observation = env.step(env.action_space.sample())[0]
+    now = observation[: len(observation) // 3]
+    assert np.abs(before(now)).max() > 1e-6
+    np.testing.assert_allclose(after(observation), before(now), atol=0.02)
+
+
 @pytest.mark.parametrize(
     ("changes", "word"),
     [({"env": {"observation": "full"}}, "full"), ({"hidden": [9]}, "[9]"),
