@@ -2,6 +2,7 @@
 into stride.
 
     python benchmarks/steering.py --policies rolling steer --out benchmarks/results/steering.json
+    python benchmarks/steering.py --policies agile --tasks places --dt 0.001 --no-tables --strides 0
 
 A row is one controller at one task over the same starts, which no training draws: the median with its 95 % interval by
 bootstrap, the least and the most. Trials that break the energy audit or diverge count as having done nothing.
@@ -29,7 +30,7 @@ from tensegym.tasks.rollout import Result, rollout
 from tensegym.tasks.stride import time_to_stride
 from tensegym.tasks.trials import Setup, run_trials
 
-COLUMNS = ("median", "low", "high", "least", "most", "speed_lps", "stalled", "audit_failures")
+COLUMNS = ("median", "low", "high", "least", "most", "speed_lps", "stalled", "slip_share", "audit_failures")
 TURN = {"motion": "steer", "leg_least": 5.0, "leg_most": 5.0, "seconds": 60.0}
 TASKS: dict[str, tuple[dict[str, Any], str]] = {  # name: its table, and the measure that it is judged by
     "places 2 L apart, 60 s": ({"motion": "places"}, "places"),
@@ -60,8 +61,12 @@ class Steering:
     """Shipped policies or runs' folders."""
     episodes: int = 100
     """Starts a task."""
+    tasks: tuple[str, ...] = ()
+    """Of the tasks, those whose names begin so; default: all."""
     dt: float | None = None
     """Physics time step [s], in place of the tasks' own."""
+    engine: str | None = None
+    """Physics engine, in place of the tasks' own."""
     tables: bool = True
     """Also the planner and the walker."""
     strides: int = 20
@@ -72,13 +77,16 @@ class Steering:
     def run(self) -> str:
         rows, strides, data = [], [], {}
         for name, (fields, measure) in TASKS.items():
+            if not name.startswith(self.tasks or ""):
+                continue
             for who, setup in self._setups(fields).items():
                 results = run_trials(setup, range(FIRST_SEED, FIRST_SEED + self.episodes))
                 row = judged(results, measure)
                 data[f"{name}: {who}"] = row
                 rows.append([name, who, measure, *(f"{row[key]:.3g}" for key in COLUMNS)])
-        for who, setup in self._setups({"motion": "steer", "leg_least": 30.0, "leg_most": 30.0, "turn_least": 90.0,
-                                        "seconds": 60.0}).items():  # fmt: skip
+                write_text(self.out, to_json(data, indent=1) + "\n")
+        turn = {"motion": "steer", "leg_least": 30.0, "leg_most": 30.0, "turn_least": 90.0, "seconds": 60.0}
+        for who, setup in self._setups(turn).items() if self.strides else ():
             after = np.array([stride(setup, FIRST_SEED + number) for number in range(self.strides)])
             data[f"stride: {who}"] = after.tolist()
             strides.append([who, *(f"{value:.3g}" for value in np.median(after, axis=0))])
@@ -89,9 +97,9 @@ class Steering:
 
     def _setups(self, fields: dict[str, Any]) -> dict[str, Setup]:
         task = as_task(fields)
-        setups = {policy: policy_setup(policy, task=task, dt=self.dt) for policy in self.policies}
+        setups = {policy: policy_setup(policy, task=task, dt=self.dt, engine=self.engine) for policy in self.policies}
         if self.tables:
-            found = baseline_setups(policy_setup("rolling", task=task, dt=self.dt))
+            found = baseline_setups(policy_setup("rolling", task=task, dt=self.dt, engine=self.engine))
             setups |= {name: found[name] for name in ("planner", "open-loop walker")}
         return setups
 
@@ -106,6 +114,7 @@ def judged(results: Sequence[Result], measure: str) -> dict[str, float]:
         "median": float(np.median(values)), "low": float(low), "high": float(high), "least": float(values.min()),
         "most": float(values.max()), "speed_lps": float(np.median(speeds)) if speeds else 0.0,
         "stalled": float(np.mean([result.measures.get("stalled", 0.0) for result in results])),
+        "slip_share": float(np.median([result.gait.slip_share for result in results])),
         "audit_failures": float(sum(not result.sound for result in results)),
     }  # fmt: skip
 
