@@ -98,7 +98,7 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
 
     metadata: ClassVar[dict[str, Any]] = {  # type: ignore[misc]  # the base class annotates an instance variable
         "render_modes": ["rgb_array", "human"],
-        "render_fps": round(1 / CONTROL_PERIOD),
+        "render_fps": 1 / CONTROL_PERIOD,  # a picture a control period: a video of them plays at true speed
     }
 
     def __init__(

@@ -11,6 +11,7 @@ from gymnasium.vector.utils import batch_space
 from tensegym.engine import Uncopied
 from tensegym.errors import DesignError
 
+from . import CONTROL_PERIOD
 from .batch import make_batch
 from .rolling import RollingEnv
 
@@ -33,6 +34,8 @@ class RollingVectorEnv(Uncopied, VectorEnv):
             raise DesignError("render_mode = 'human' is for one environment; take rgb_array or None here")
         self.num_envs, self.render_mode = num_envs, arguments.get("render_mode")
         self.batch = make_batch(num_envs, processes, max_episode_steps, arguments)
+        pictures = 1 / arguments.get("control_period", CONTROL_PERIOD)
+        self.metadata = {**type(self).metadata, "render_fps": pictures}  # type: ignore[misc]
         self.single_observation_space, self.single_action_space = self.batch.spaces
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)

@@ -45,6 +45,11 @@ class Recorder:
             place = episode.reading.centre[:2] + bearing.distance * bearing.direction
         self.look(episode.robot, bearing, place, episode.meter.face)
 
+    def due(self, robot: TensegrityRobot) -> bool:
+        """Whether a period has gone by since the last look, for who sees a robot more often than is to be kept."""
+        last = self._rows[-1]["times"] if self._rows and robot is self._robot else -np.inf
+        return bool(robot.time < last or robot.time > last + 0.8 * self.period)  # type: ignore[operator]
+
     def look(
         self, robot: TensegrityRobot, bearing: Bearing | None = None, place: object = _NOWHERE, face: int = -1
     ) -> None:
@@ -74,7 +79,7 @@ class Recorder:
         """What was seen since the last episode began. Raises SimulationError where nothing was."""
         robot = self._robot
         if robot is None:
-            raise SimulationError("nothing was recorded: the robot diverged before the first look at it")
+            raise SimulationError("nothing was recorded: the robot diverged before a first look, or there was none")
         over_time = [name for name, shape in SHAPES.items() if shape[0] == "t"]
         seen = {name: np.array([row[name] for row in self._rows]) for name in over_time}
         ground = self._scene.ground

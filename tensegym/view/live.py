@@ -121,7 +121,7 @@ class Live:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "replay.html")
             write_replay(recording, path)
-            client.send_file_download(path.name, path.read_bytes())
+            client.send_file_download(path.name, path.read_bytes(), save_immediately=True)
 
     def _clicked(self, event: Any) -> None:
         place = self.surroundings.place_of(np.array(event.ray_origin), np.array(event.ray_direction))

@@ -16,7 +16,7 @@ from .page import Page
 
 SPAN = 10.0  # s that are shown
 _MOST = 150  # points a line
-_HEIGHT = 190  # pixels
+_HEIGHT, _MARGIN = 190, (12, 12, 0, 0)  # pixels; above and to the right for half a number of an axis
 
 
 class Plots:
@@ -32,6 +32,8 @@ class Plots:
         self._panel.set_width(340)
         names = [f"drive {d + 1}" for d in range(count)]
         with self._panel.add_tab("Drives"):
+            page.gui.add_markdown("&ensp;".join(f'<span style="color:{_colour(n)}">&#9632;</span> {n + 1}'
+                                                for n in range(count)))  # fmt: skip
             self._plots = [
                 _plot(page, "tension of the wound cables [N]", names, torque / drive.spool_radius),
                 _plot(page, "current [A]", names, drive.current_limit),
@@ -60,12 +62,16 @@ class Plots:
         self._panel.remove()
 
 
+def _colour(drive: int) -> str:
+    return COLOURS[drive % len(COLOURS)]
+
+
 def _plot(page: Page, title: str, names: list[str], limit: float) -> tuple[Any, float]:
-    lines = [{"label": name, "stroke": COLOURS[n % len(COLOURS)], "width": 1.5} for n, name in enumerate(names)]
+    lines = [{"label": name, "stroke": _colour(n), "width": 1.5} for n, name in enumerate(names)]
     limit_line = {"label": "limit", "stroke": "#888888", "width": 1, "dash": [6, 4]}
     empty = tuple(np.zeros(1) for _ in range(len(lines) + 2))
     plot = page.gui.add_uplot(
         empty, ({"label": "time [s]"}, *lines, limit_line), title=title, height=_HEIGHT,
-        scales={"x": {"time": False}}, legend={"show": False}, axes=({"label": "time [s]"}, {}),
+        scales={"x": {"time": False}}, legend={"show": False}, axes=({"label": "time [s]"}, {}), padding=_MARGIN,
     )  # fmt: skip
     return plot, limit

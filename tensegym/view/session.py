@@ -72,8 +72,11 @@ class Session:
     # -- what a page asks ---------------------------------------------------------------------------------------------
 
     def choose(self, choice: Choice) -> Stage:
-        """Begin anew with another choice. Raises as the session's making does, and goes on with the old one then."""
+        """Begin anew with another choice, what is recorded too. Raises as the session's making does, and goes on with
+        the old one then."""
         other = Session(choice)
+        if self.recorder:
+            other.record()
         self.close()
         self.__dict__ = other.__dict__
         return self.stage()
@@ -99,7 +102,8 @@ class Session:
     def record(self) -> None:
         """Keep what it does from now on."""
         self.recorder = Recorder(f"{self._episode.robot.design.name}, {self.choice.driver}", PERIOD)
-        self.recorder(self._episode)
+        if not self._episode.diverged:
+            self.recorder(self._episode)
 
     def recorded(self) -> Recording:
         """What was kept; it keeps no more. Raises SimulationError where nothing was."""
@@ -118,7 +122,7 @@ class Session:
         """Go on by control steps, as fast as it can, for so long on the wall's clock [s]; what is seen in the end."""
         end = time.perf_counter() + seconds
         while time.perf_counter() < end and not self._episode.diverged:
-            self._step()
+            self._step(self.recorder)
         return [self.frame()]
 
     def _step(self, watcher: Watcher | None = None) -> None:
@@ -162,8 +166,9 @@ class _Seen:
 
     def __call__(self, episode: Episode) -> None:
         self.frames.append(self._session.frame())
-        if self._session.recorder:
-            self._session.recorder(episode)
+        recorder = self._session.recorder
+        if recorder and recorder.due(episode.robot):
+            recorder(episode)
 
 
 def _start(face: int) -> dict[str, float]:

@@ -65,6 +65,7 @@ def test_rows_are_single_environments_that_start_anew_in_the_step_that_ends_them
 
 def test_the_registered_time_limit_holds():
     vector = gym.make_vec("tensegym/FlexibleSixRodRolling-v0", num_envs=1, control_period=0.002, settle=0.0)
+    assert vector.metadata["render_fps"] == pytest.approx(1 / 0.002)
     vector.reset(seed=0)
     ends = [bool(vector.step(np.zeros((1, 6)))[3][0]) for _ in range(101)]
     assert np.flatnonzero(ends).tolist() == [49, 99]

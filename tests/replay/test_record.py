@@ -3,6 +3,7 @@
 import gymnasium
 import numpy as np
 import pytest
+from gymnasium.wrappers import RecordVideo
 
 import tensegym
 from tensegym.errors import InputError
@@ -57,3 +58,11 @@ def test_what_cannot_be_recorded_is_refused(tmp_path):
         for name, error in (("run.gif", InputError), ("none/run.html", FileNotFoundError)):
             with pytest.raises(error):
                 tensegym.record(env, tmp_path / name)
+
+
+def test_a_video_by_gymnasium_plays_at_true_speed(tmp_path):
+    moviepy = pytest.importorskip("moviepy")
+    env = RecordVideo(make(render_mode="rgb_array", control_period=0.2), str(tmp_path), disable_logger=True)
+    played(env, steps=3)
+    with moviepy.VideoFileClip(str(next(tmp_path.iterdir()))) as clip:
+        assert clip.duration == pytest.approx((1 + 3) * 0.2)  # a picture of the start, and one a step

@@ -12,11 +12,13 @@ from tests.browser import PATIENCE, Tab, chromium
 pytest.importorskip("viser", reason="no viser here: pip install '.[view]'")
 from tensegym.flexure.hinge import preset
 from tensegym.flexure.models.joint_fit import fit_joint
+from tensegym.replay import read_replay
 from tensegym.view.choice import Choice
 from tensegym.view.hinge_view import FEM, HingeView
 from tensegym.view.live import Live
 from tensegym.view.page import Page
 from tensegym.view.player import Player
+from tensegym.view.session import PERIOD
 
 HINGE = preset("leaf-spring")
 
@@ -72,6 +74,27 @@ def test_a_policy_plays_and_a_click_on_the_ground_is_where_it_goes(live, tab):
     assert np.linalg.norm(placed.place - first.poses[:, :2].mean(axis=0)) < 5
     later = frame_when(live, lambda frame: frame.time > placed.time + 0.5)
     assert np.allclose(later.place, placed.place, atol=1e-6)  # a place, though the robot moves
+
+
+def test_what_is_recorded_is_downloaded_and_opens_as_a_replay(browser, live, tab, tmp_path):
+    tab.page.get_by_role("button", name="record", exact=True).click()
+    end = tab.page.get_by_role("button", name="end and download")
+    end.wait_for()
+    begun = live.frame.time
+    frame_when(live, lambda frame: frame.time > begun + 1)
+    with tab.page.expect_download() as download:
+        end.click()
+    path = tmp_path / download.value.suggested_filename
+    download.value.save_as(path)
+    kept = read_replay(path)
+    assert kept.seconds > 1
+    assert np.diff(kept.times) == pytest.approx(PERIOD, abs=0.3 * PERIOD)
+    tab.page.get_by_role("button", name="record", exact=True).wait_for()  # again
+    replay = Tab(browser, path.as_uri())
+    replay.page.wait_for_selector("body[data-ready]")
+    assert "rolling" in replay.page.inner_text("#title")
+    replay.close()
+    assert replay.complaints == replay.abroad == []
 
 
 def test_a_slider_turns_a_drive_and_another_viewer_sees_it(browser, live, tab):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tensegym.errors import DesignError, StructureError
+from tensegym.errors import DesignError, SimulationError, StructureError
 from tensegym.tasks.trials import Setup
 from tensegym.view.choice import Choice
 from tensegym.view.session import HOLD, PERIOD, Session
@@ -51,6 +51,29 @@ def test_a_place_becomes_the_goal_and_the_way_leads_there(opened):
     frame = session.step()[-1]
     assert not np.isfinite(frame.place).any()
     assert frame.direction == pytest.approx([0, 1])
+
+
+def test_a_recording_looks_as_often_at_any_speed_and_begins_anew_with_the_robot(opened):
+    session = opened("random")
+    session.record()
+    begun = session.frame().time
+    session.step(PERIOD / 5)  # slow motion: more pictures, no more of them kept
+    slow = session.frame().time
+    session.run(1e-3)  # as fast as it goes: one control step, and no picture of it
+    times = session.recorded().times
+    assert (times[0], times[-1]) == (begun, session.frame().time)
+    assert session.frame().time > slow > begun
+    assert np.diff(times) == pytest.approx(PERIOD, abs=0.3 * PERIOD)
+    session.record()
+    session.step()
+    session.choose(Choice("random", payload=True))
+    again = session.frame().time
+    session.step()
+    kept = session.recorded()
+    assert kept.times[0] == again
+    assert kept.design.payload is not None
+    with pytest.raises(SimulationError, match="nothing was recorded"):
+        session.recorded()
 
 
 def test_a_choice_that_fails_leaves_what_runs(opened):
