@@ -21,6 +21,7 @@ from tensegym.search.store import Finished, Store, masked
 from tensegym.search.winner import best_number
 from tensegym.search.workers import Workers, check_workers, open_workers
 from tensegym.tables import in_file, read_text
+from tensegym.tasks.trials import Setup, check_setup
 
 from .options import Count, Jobs, Seed
 from .standing import tell_unless_standing
@@ -85,11 +86,14 @@ class Run(_Search):
         self._check()
         problem = load_problem(self.task).with_settings(self.engine, seed=self.seed, sampler=self.sampler)
         check_engine(problem.task.engine)
+        start = problem.space.apply(problem.space.start)
+        design = design_from_dict(start["design"])
+        with in_file(f"the start of {self.task}"):
+            check_setup(Setup("the start", problem.task, start["controller"], design))
         with open_workers(self.workers, self.jobs, self.address) as pool, lock_folder(self.out):
             store = Store(self.out, problem, self.storage)
             write_text(self.out / "storage.txt", masked(self.storage or ""))
-            start = design_from_dict(problem.space.apply(problem.space.start)["design"])
-            tell_unless_standing(start, problem.task.engine)
+            tell_unless_standing(design, problem.task.engine)
             return self._go(problem, store, pool, self.budget, self.out)
 
 

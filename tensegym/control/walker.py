@@ -45,28 +45,34 @@ class Walker:
     ) -> None:
         self._settings, self.period = settings or WalkerSettings(), period
         self._table = table
+        self._by_face: dict[int, list[Tip]] = {}
 
     def begin(self, robot: TensegrityRobot, seed: int = 0) -> None:
         """As `Controller` has it. Raises DesignError where the table is of another number of faces or drives."""
         if self._table is None:
             with TensegrityRobot(robot.design, dt=robot.dt, engine=robot.engine) as other:
                 self._table = tip_table(other)
-        tabled = 1 + max(tip.from_face for tip in self._table), 1 + max(max(t.pull.drives) for t in self._table)
+        if not self._by_face:
+            self._read(self._table)
         here = len(robot.faces.triangles), len(robot.drives)
-        if tabled[0] > here[0] or tabled[1] != here[1]:
+        if self._tabled[0] > here[0] or self._tabled[1] != here[1]:
             raise DesignError(
-                f"the walker's table is of a robot with {tabled[0]} faces and {tabled[1]} drives, this one has "
-                f"{here[0]} and {here[1]}; take the pattern generator (kind = 'cpg')"
+                f"the walker's table is of a robot with {self._tabled[0]} faces and {self._tabled[1]} drives, this one "
+                f"has {here[0]} and {here[1]}; take the pattern generator (kind = 'cpg')"
             )
         self._deepest = robot.design.deepest_pull
-        self._scale = self._settings.depth * self._deepest / max(tip.pull.depth for tip in self._table)
-        self._by_face: dict[int, list[Tip]] = {}
-        for tip in self._table:
-            if tip.tipped:
-                self._by_face.setdefault(tip.from_face, []).append(tip)
-        self._fallback = max(self._table, key=lambda tip: len(tip.pull.drives)).pull
+        self._scale = self._settings.depth * self._deepest / self._depth
         self._pull: Pull | None = None
         self._since = 0.0
+
+    def _read(self, table: Sequence[Tip]) -> None:
+        """What every episode asks of the table."""
+        self._tabled = 1 + max(tip.from_face for tip in table), 1 + max(max(tip.pull.drives) for tip in table)
+        self._depth = max(tip.pull.depth for tip in table)
+        self._fallback = max(table, key=lambda tip: len(tip.pull.drives)).pull
+        for tip in table:
+            if tip.tipped:
+                self._by_face.setdefault(tip.from_face, []).append(tip)
 
     def angles(self, robot: TensegrityRobot, bearing: Bearing) -> FloatArray:
         """As `Controller` has it."""

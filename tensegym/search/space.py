@@ -144,6 +144,8 @@ def _dimension(
         return Dimension(path, Range(0, len(choices) - 1), choices=tuple(choices)), first
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InputError(one_line(f"{where} is {show(value)} in the start, no number; give choices"))
+    if isinstance(value, int) and entry is None:  # such as a builder's number of rods
+        raise InputError(f"{where} takes whole numbers; give them as choices = [{value}, {value + 1}]")
     if "spread" in spec:
         known(spec, ("spread", "log"), where, InputError)
         spread = as_number(spec["spread"], f"{where}: spread", InputError)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from tensegym.control.controller import Controller
-from tensegym.control.table import make_controller
+from tensegym.control.table import OWN, make_controller
 from tensegym.design.design import RobotDesign
 from tensegym.design.variation import Variation
 from tensegym.processes import process_map
@@ -49,12 +49,15 @@ class Setup:
 
 
 def check_setup(setup: Setup) -> None:
-    """Raise what building it, or putting its controller on its robot, raises; nothing is simulated but the start."""
+    """Raise what building it, or putting its controller on its robot, raises; nothing is simulated but the start.
+
+    A controller that first makes its robot's own table of tips, which takes minutes, is not put on it.
+    """
     setup.task.disturb.check(setup.design)
     with closing(setup.robot()) as robot:
         controller = make_controller(setup.controller)
         whole_steps(controller.period, setup.task.dt)
-        if setup.controller.get("kind") not in ("walker", "planner"):  # which may tabulate its robot first
+        if setup.controller.get("tips") != OWN:
             episode = Episode(robot, setup.task, np.random.default_rng(0))
             controller.begin(robot, 0)
             if not episode.diverged:

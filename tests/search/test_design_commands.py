@@ -72,6 +72,17 @@ def test_the_folder_of_another_study_is_refused(cli, tiny_file, tmp_path):
     assert_refused(cli("design", "run", "--task", tiny_file, "--seed", 3, "--out", out), "another task file")
 
 
+def test_a_controller_that_does_not_fit_is_refused_before_anything_is_written(cli, tiny_file, tmp_path):
+    out, command = tmp_path / "study", ("design", "run", "--task", tiny_file, "--budget", 1, "--out")
+    prism = '[design.structure]\nbuilder = "prism"\n[controller]\nkind = "walker"\ntips = "three_rod_robot"'
+    text = tiny_file.read_text().replace("[controller]\namplitudes = [0.5, 0.5]", prism)
+    tiny_file.write_text(text.replace('"controller.lags" = {low = -1.0', '"controller.depth" = {low = 0.5'))
+    assert_refused(cli(*command, out), "the start of", "6 drives, this one has 8 and 0")
+    tiny_file.write_text(tiny_file.read_text().replace("three_rod_robot", "nobodys"))
+    assert_refused(cli(*command, out), "no table of tips")
+    assert not out.exists()
+
+
 @pytest.mark.parametrize("url", ["postgresql://nobody@127.0.0.1:1/none", "nonsense", "sqlite:////no/such/folder/a.db"])
 def test_a_storage_that_does_not_answer_is_refused(cli, tiny_file, tmp_path, url):
     out = tmp_path / "study"

@@ -67,6 +67,29 @@ def test_bad_task_files_are_refused(tiny, old, new, words):
         assert word in str(refused.value)
 
 
+@pytest.mark.parametrize(("structure", "words"), [
+    ("rods = 2", ["structure.rods = 2 is outside [3, 60]"]),
+    ("height = -1", ["structure.height = -1 is outside"]),
+    ('builder = "prsim"', ["'prsim' is not one of prism"]),
+])  # fmt: skip
+def test_a_builder_that_makes_nothing_is_refused(tiny, structure, words):
+    builder = "" if "builder" in structure else 'builder = "prism"\n'
+    with pytest.raises(InputError) as refused:
+        tiny(("[controller]", f"[design.structure]\n{builder}{structure}\n[controller]"))
+    assert all(word in str(refused.value) for word in ["tiny", *words])
+
+
+def test_whole_numbers_are_searched_as_choices(tiny):
+    prism = ("[controller]\namplitudes = [0.5, 0.5]",
+             '[design.structure]\nbuilder = "prism"\nwound = "around"\n[controller]\nkind = "random"')  # fmt: skip
+    space = '"controller.lags" = {low = -1.0, high = 1.0}'
+    with pytest.raises(InputError, match=r"takes whole numbers; give them as choices = \[3, 4\]"):
+        tiny(prism, (space, '"design.structure.rods" = {low = 3, high = 5}'))
+    problem = tiny(prism, (space, '"design.structure.rods" = {choices = [3, 4]}'))
+    rods = "design.structure.rods"
+    assert problem.space.apply(problem.space.start | {rods: 1})["design"]["structure"]["rods"] == 4
+
+
 def test_a_space_is_needed():
     with pytest.raises(InputError, match="is empty; give at least one field"):
         problem_from('task = "roll"', "nothing")
