@@ -31,7 +31,8 @@ class Evaluate:
     """Evaluate a policy and the baselines from random faces and headings; writes metrics.json, gait.png, roll.mp4."""
 
     policy: str = "rolling"
-    """A run's folder, or a shipped policy: rolling, onboard, flexible, carry, climb, steep, sprint, conditioned."""
+    """A run's folder, or a shipped policy: rolling, onboard, flexible, carry, climb, steep, sprint, agile,
+    agile_onboard, steer_first, conditioned."""
     out: Path = Path("evaluation")
     """Folder for metrics.json, gait.png and roll.mp4."""
     episodes: Count = 100

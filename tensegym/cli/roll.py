@@ -24,7 +24,8 @@ class Roll:
     """Watch the shipped policy roll: a quick evaluation with pictures and a video; baselines for the default robot."""
 
     policy: str = "rolling"
-    """A run's folder, or a shipped policy: rolling, onboard, flexible, carry, climb, steep, sprint, conditioned."""
+    """A run's folder, or a shipped policy: rolling, onboard, flexible, carry, climb, steep, sprint, agile,
+    agile_onboard, steer_first, conditioned."""
     out: Path = Path("roll")
     """Folder for metrics.json, gait.png and roll.mp4."""
     episodes: Count = 10
