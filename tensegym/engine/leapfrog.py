@@ -17,7 +17,7 @@ from .rod_rotation import turn_rods
 from .split_rod_step import step_split_rods
 
 
-@kernel(**ALLOCATING)
+@kernel(**ALLOCATING, forceinline=True)
 def engine_substep(model, ground, state, out, dt, implicit):
     """`substep`, and then in place of the forces and moments on the bodies, out.wrenches, those under which the
     engine's step is one of the leapfrog. Of a second half a moment along the pin is left: its force has been carried

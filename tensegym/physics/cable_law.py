@@ -21,7 +21,7 @@ from tensegym.compiled import kernel
 
 from .mobility import mobility_matrix, whole_blocks
 from .model import DAMPING, STIFFNESS, TWO_WAY
-from .vectors import KERNEL
+from .vectors import INLINED, KERNEL
 
 _MAX_SWEEPS, _TOLERANCE = 200, 1e-6  # of the implicit solve; changes below 1e-6 of the largest tension end it
 _SLOW = 0.1  # (dt w)^2 and dt c A below which a flexure's row stays explicit; the scheme is stable up to 4
@@ -44,7 +44,7 @@ def is_slow(mobility, stiffness, damping, dt):
     return dt * mobility * max(dt * stiffness, damping) < _SLOW
 
 
-@kernel(**KERNEL)
+@kernel(**INLINED)
 def implicit_tensions(model, out, lengths, rates, natural, dt, tensions):
     """Write the tensions (s,) at the end of the step, from the geometry in ``out``; they start from the last step's.
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from tensegym.compiled import kernel
 
-from .vectors import ALLOCATING, KERNEL, cross, rotate, rotation_matrix
+from .vectors import ALLOCATING, INLINED, KERNEL, cross, rotate, rotation_matrix
 
 
 @kernel(**KERNEL)
@@ -56,7 +56,7 @@ def span(poses, rotations, ends, params, c):
     return (x, y, z), (ax, ay, az), (bx, by, bz)
 
 
-@kernel(**KERNEL)
+@kernel(**INLINED)
 def spring_geometry(model, poses, angles, out, lengths):
     """Write the lengths (s,) of all springs, and rotations, directions and moment arms in ``out``.
 

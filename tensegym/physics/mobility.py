@@ -8,7 +8,7 @@ from tensegym.compiled import kernel
 
 from .model import BLOCK, INVERSE_AXIAL, INVERSE_MASS, INVERSE_TRANSVERSE
 from .split_rods import add_generalised, second_twist
-from .vectors import ALLOCATING, KERNEL, dot
+from .vectors import ALLOCATING, INLINED, KERNEL, dot
 
 
 @kernel(**KERNEL)
@@ -17,7 +17,7 @@ def whole_blocks(count):
     return (count + BLOCK - 1) // BLOCK * BLOCK
 
 
-@kernel(**KERNEL)
+@kernel(**INLINED)
 def mobility_matrix(model, out, count):
     """Write out.mobility, A = J M^-1 J^T (count, count) [1/kg], of the spring rows out.rows[:count].
 

@@ -16,12 +16,12 @@ from .model import CENTRE_PATH, DRIVE_WORK, ELECTRICAL_ENERGY, FOOT_PATH, FOOT_P
 from .spin import damp_spins
 from .split_rods import second_poses, split_rod_inertia
 from .terrain import distance_to_ground
-from .vectors import KERNEL
+from .vectors import INLINED, KERNEL
 
 GROUND_TOLERANCE = 1e-3  # m; a foot whose gap to the ground is below this is grounded
 
 
-@kernel(**KERNEL)
+@kernel(**INLINED)
 def substep(model, ground, state, out, dt, implicit):
     """Geometry, tensions, wrenches, drives, totals: ``state`` is updated, ``out`` written; out.wrenches act on the
     bodies.
@@ -65,7 +65,7 @@ def reset_springs(model, state, out):
     explicit_tensions(model.spring_params, state.lengths, state.rates, state.natural, state.tensions)
 
 
-@kernel(**KERNEL)
+@kernel(**INLINED)
 def _wind(model, state, out, dt):
     """Advance the drives under their cables' tensions, and add up what they do and take."""
     totals, drives = state.totals, state.drives
@@ -78,7 +78,7 @@ def _wind(model, state, out, dt):
         totals[ELECTRICAL_ENERGY] += max(0.0, drives[d, CURRENT] * drives[d, VOLTAGE]) * dt
 
 
-@kernel(**KERNEL)
+@kernel(**INLINED)
 def _add_paths(model, ground, state, out):
     """Add the horizontal paths of the grounded feet's centres (mean and sum over feet) and of the centre of mass."""
     now, before, totals = out.new_positions, state.node_positions, state.totals

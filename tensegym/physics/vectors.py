@@ -11,6 +11,8 @@ from tensegym.compiled import kernel
 ALLOCATING: dict[str, Any] = {"error_model": "numpy", "_nrt": True}  # division by zero: an infinity, no exception
 # A kernel that makes no arrays needs no counts of references to them, a third of a substep's time
 KERNEL: dict[str, Any] = ALLOCATING | {"_nrt": False}
+# A call copies every word of a Model, a State and an Out, some hundreds: kernels of the step that take whole ones
+INLINED: dict[str, Any] = KERNEL | {"forceinline": True}
 
 
 @kernel(**KERNEL)
