@@ -1,12 +1,16 @@
 """Searches side by side: the best so far by sampler over seeds, or the hypervolume where there are several objectives.
 
     python benchmarks/design_compare.py --folders runs/carry-cmaes-* runs/carry-random-*
+    tensegym design run --task benchmarks/samplers.toml --sampler tpe --seed 0 --budget 401 --out runs/tpe-0 # and so on
+    python benchmarks/design_compare.py --folders runs/cmaes-* runs/tpe-* runs/random-* --episodes 20
 
 Compares at the number of trials that all have. Refused, stopped and out-of-constraint trials count as trials but never
 as the best. Hypervolumes are of objectives scaled so that the worst and best of all searches are 1 and 0.
 
 With --episodes the best is not the one as searched, which flatters whoever has the luckiest starts, but the mean of the
 first objective's winner over as many starts that no search drew.
+
+Intervals are of 95 % over seeds: Student's of a sampler's mean, Welch's of its difference from random search.
 """
 
 from __future__ import annotations
@@ -17,6 +21,7 @@ from pathlib import Path
 import numpy as np
 import tyro
 from optuna._hypervolume import compute_hypervolume
+from scipy import stats
 
 from tensegym.cli.design import open_search
 from tensegym.processes import Pool
@@ -62,9 +67,12 @@ class Compare:
                 score = float(rows.min()) * (-1 if objectives[0].maximise else 1)
             by_sampler.setdefault(problem.settings.sampler, []).append(score)
         what = "hypervolume" if several else str(objectives[0])
-        lines = [[name, len(v), budget, float(np.median(v)), min(v), max(v)] for name, v in by_sampler.items()]
         what += f" over {self.episodes} new starts" if self.episodes else ""
-        return table(["sampler", "seeds", "trials", f"{what}, median", "least", "most"], lines)
+        random = by_sampler.get("random")
+        lines = [[name, len(v), budget, float(np.median(v)), min(v), max(v), *_mean(v), *_beyond(v, random)]
+                 for name, v in by_sampler.items()]  # fmt: skip
+        return table(["sampler", "seeds", "trials", f"{what}, median", "least", "most", "mean", "95 %",
+                      "less random's", "95 %"], lines)  # fmt: skip
 
     def _confirmed(self, problem: Problem, finished: Finished) -> float:
         with Pool(self.jobs) as engine:
@@ -72,6 +80,26 @@ class Compare:
             rows = over_starts(problem, {(best, TIME_STEP): problem.space.apply(finished[best][0])}, self.episodes,
                                0, engine)  # fmt: skip
         return float(np.mean([row[problem.settings.objectives[0].metric] for row in rows[best, TIME_STEP]]))
+
+
+def _mean(scores: list[float]) -> tuple[float, str]:
+    """Mean over seeds, and its interval."""
+    return float(np.mean(scores)), _interval(scores)
+
+
+def _beyond(scores: list[float], random: list[float] | None) -> tuple[float | str, str]:
+    """Mean less that of random search, and its interval."""
+    if random is None or random is scores:
+        return "-", "-"
+    return float(np.mean(scores) - np.mean(random)), _interval(scores, random)
+
+
+def _interval(scores: list[float], others: list[float] | None = None) -> str:
+    if min(len(scores), len(others or scores)) < 2:
+        return "-"
+    test = stats.ttest_1samp(scores, 0.0) if others is None else stats.ttest_ind(scores, others, equal_var=False)
+    low, high = test.confidence_interval(0.95)
+    return f"[{low:.3f}, {high:.3f}]"
 
 
 if __name__ == "__main__":
