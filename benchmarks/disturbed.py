@@ -54,6 +54,8 @@ class Disturbed:
     """Shipped policies or runs' folders, which see what sensors give."""
     shares: tuple[float, ...] = (0.1, 0.2, 0.3)
     """Of the designed values, up to which they are off."""
+    only: tuple[str, ...] = ()
+    """Of the rows, those whose names begin so; default: all."""
     episodes: int = 100
     """Starts a row."""
     seconds: float = 20.0
@@ -69,6 +71,8 @@ class Disturbed:
         data: dict[str, Any] = {"nothing": {policy: float(speed) for policy, speed in plain.items()}}
         rows = [["nothing", *(f"{speed:.3f}" for speed in plain.values())]]
         for name, fields in disturbances(self.shares):
+            if not name.startswith(self.only or ""):
+                continue
             data[name], row = {}, [name]
             for policy, setup in setups.items():
                 task = setup.task.changed(disturb=fields)
