@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 import subprocess
+import sys
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -33,7 +34,7 @@ class Train:
     """Train a rolling policy with PPO and save it with its curve."""
 
     config: str = "rolling"
-    """A committed config (rolling, onboard, flexible, conditioned, carry, climb, steep) or the path of a YAML file."""
+    """A committed config, such as rolling, onboard or carry (a wrong name lists all), or the path of a YAML file."""
     out: Path | None = None
     """Folder of the run; default runs/CONFIG-sSEED. One folder a run."""
     seed: Seed = 0
@@ -50,6 +51,7 @@ class Train:
             raise FileNotFoundError(f"nothing to resume in {out}: no state.json")
         with lock_folder(out):
             config, state = self._go_on(out) if self.resume else self._begin(out)
+            _tell_steps(config)
             steps = train(config, out, state)
             rows = read_curve(out / CURVE)
             draw_curve({out.name: out / CURVE}, out / "curve.png")
@@ -57,8 +59,6 @@ class Train:
         data = {"out": str(out), "seed": state.seed, "steps": steps, "best_median_speed_lps": best,
                 "last": rows[-1] if rows else {}}  # fmt: skip
         text = table(["run", "steps", "best median speed L/s"], [[str(out), steps, best]])
-        if steps != config.steps:
-            text += f"\n{config.steps} steps were asked for; whole updates of {config.rollout_steps} are made"
         return Report(text, data)
 
     def _begin(self, out: Path) -> tuple[TrainConfig, TrainState]:
@@ -88,6 +88,13 @@ class Train:
             config = replace(config, steps=self.steps)
             _write_config(config, out)
         return config, state
+
+
+def _tell_steps(config: TrainConfig) -> None:
+    """Where whole updates are more than was asked for, say so before they are made."""
+    if config.whole_steps != config.steps:
+        print(f"tensegym: {config.steps} steps are asked for; it will be {config.whole_steps}, whole updates of "
+              f"{config.rollout_steps}", file=sys.stderr, flush=True)  # fmt: skip
 
 
 def _check(config: TrainConfig) -> None:

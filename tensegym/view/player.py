@@ -39,7 +39,10 @@ class Player:
         self._ended, self._returned = threading.Event(), threading.Event()
         length = max(each.design.length for each in recordings)
         width = _APART * length * (len(recordings) - 1)
-        page.initial_camera.position = (1.5 * length + width, -1.7 * length - width, 0.9 * length + 0.5 * width)
+        away = 1.75 * (0.5 * width + 0.8 * length)  # all of a row between the panels
+        page.initial_camera.position = (
+            (away, 0.0, 0.45 * away) if width else (1.5 * length, -1.7 * length, 0.9 * length)
+        )
         page.initial_camera.look_at = (0.0, 0.0, 0.4 * length)
         self.surroundings = Surroundings(page, Stage(first.design, first.ground, first.gravity, first.path))
         self.scenes = []
@@ -49,13 +52,14 @@ class Player:
             scene.root.position = (0.0, across, 0.0)
             self.scenes.append(scene)
             if names:
-                page.scene.add_label(f"/world/name {n + 1}", names[n], position=(0.0, across, 1.2 * length))
-        self._panel(page, first)
+                page.scene.add_label(f"/world/name {n + 1}", names[n], position=(0.0, across, 1.2 * length),
+                                     anchor="bottom-center")  # fmt: skip
+        self._panel(page, first, f"The plots are of: {names[0]}" if names else first.title or first.design.name)
         self.show(0.0)
 
-    def _panel(self, page: Page, first: Recording) -> None:
+    def _panel(self, page: Page, first: Recording, title: str) -> None:
         page.gui.main_panel.dock_right()
-        self._says = page.gui.add_markdown(first.title or first.design.name)
+        page.gui.add_markdown(title)
         self._play = page.gui.add_button("pause")
         self._play.on_click(lambda _: self._toggle())
         step = max(1e-3, round(self.seconds / 1000, 3))

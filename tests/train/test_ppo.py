@@ -97,9 +97,9 @@ def test_steps_are_rounded_up_to_whole_updates_and_no_further(tiny_config, tmp_p
     """An update is of 20 steps and a chunk of one of them here; of two, the last one is cut short."""
     config = yaml.safe_load(tiny_config.read_text()) | {"chunk": 2, "steps": 50}
     (tmp_path / "c.yaml").write_text(yaml.safe_dump(config))
-    status, output, _ = cli("train", "--config", tmp_path / "c.yaml", "--out", tmp_path / "run")
+    status, _, told = cli("train", "--config", tmp_path / "c.yaml", "--out", tmp_path / "run")
     assert status == 0
-    assert "50 steps were asked for; whole updates of 20 are made" in output
+    assert "50 steps are asked for; it will be 60, whole updates of 20" in told
     assert {p.name for p in (tmp_path / "run" / "checkpoints").iterdir()} == {"000000040", "000000060"}
 
 
