@@ -9,27 +9,13 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 
-from tensegym.arrays import FloatArray
 from tensegym.errors import DesignError
 from tensegym.processes import Worker, call_all, cores
-from tensegym.tables import show
 
+from .actions import as_actions
 from .rolling import RollingEnv
 
 Steps = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]
-
-
-def _checked(actions: Any, shape: tuple[int, ...]) -> FloatArray:
-    """Actions of that shape. Raises DesignError for any others, before an environment has stepped."""
-    try:
-        values = np.asarray(actions, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        raise DesignError(f"actions have shape {shape}, a row of numbers each robot; given {show(actions)}") from None
-    if values.shape != shape:
-        raise DesignError(f"actions have shape {shape}, a row each robot; given {values.shape}")
-    for i in np.flatnonzero(~np.isfinite(values).all(axis=1)):
-        raise DesignError(f"row {i} of the actions, {values[i].tolist()}, has an entry that is no finite number")
-    return values
 
 
 class Batch:
@@ -60,7 +46,7 @@ class Batch:
     def step(self, actions: np.ndarray) -> Steps:
         """Actions (n, w) in; observations (n, o), rewards, terminated, truncated (n,) and infos out."""
         count = len(self.envs)
-        actions = _checked(actions, (count, *self.spaces[1].shape))
+        actions = as_actions(actions, (count, *self.spaces[1].shape))
         rewards, terminated, truncated = np.zeros(count), np.zeros(count, bool), np.zeros(count, bool)
         observations, infos = [], []
         self._steps += 1
@@ -122,7 +108,7 @@ class Processes:
 
     def step(self, actions: np.ndarray) -> Steps:
         """As Batch.step."""
-        actions = _checked(actions, (self.rows[-1].stop, *self.spaces[1].shape))
+        actions = as_actions(actions, (self.rows[-1].stop, *self.spaces[1].shape))
         *arrays, infos = zip(*self._ask("step", actions), strict=True)
         observations, rewards, terminated, truncated = (np.concatenate(array) for array in arrays)
         return observations, rewards, terminated, truncated, list(chain(*infos))

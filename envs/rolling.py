@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import Any, ClassVar
 
 import gymnasium as gym
 import numpy as np
-from gymnasium import spaces
 from gymnasium.utils import EzPickle
 from numpy.typing import NDArray
 
-from tensegym.arrays import FloatArray
-from tensegym.control.observation import Observation
-from tensegym.control.observations import make_observation
 from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import as_design
 from tensegym.design.variation import parse_variation
 from tensegym.errors import DesignError, SimulationError
-from tensegym.robot.fallen import FALLEN, FLAT, has_fallen
-from tensegym.robot.rendering import draw_in_window, render
-from tensegym.robot.robot import TensegrityRobot
+from tensegym.robot.fallen import FALLEN, FLAT
 from tensegym.tables import as_whole, known, show
 from tensegym.tasks.episode import Episode, Watcher
 from tensegym.tasks.motions import as_task
@@ -29,11 +22,14 @@ from tensegym.tasks.start import OPTIONS, check_options
 from tensegym.tasks.task import Task
 
 from . import CONTROL_PERIOD
+from .actions import as_action
+from .draws import Draws
+from .stage import Stage
 
 REDRAWS = 20  # designs in a row that may all diverge while they settle
 
 
-class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
+class RollingEnv(Stage, EzPickle):
     """Roll a tensegrity robot along a wanted direction by winding its stiff cables.
 
     One step commands a spool angle to every drive and holds it for the control period, while drives, cables and
@@ -124,8 +120,6 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         )
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise DesignError(f"render_mode = {render_mode!r} is not one of None, rgb_array, human")
-        if type(episodes_per_design) is not int or episodes_per_design < 0:
-            raise DesignError(f"episodes_per_design = {episodes_per_design!r} must be a whole number, 0 or more")
         self.task = as_task(task).changed(
             dt=dt, settle=settle, slope=slope, reward=reward, disturb=disturb, engine=engine, obstacle=obstacle
         )
@@ -133,20 +127,11 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         self.substeps = whole_steps(control_period, self.dt)
         self.render_mode = render_mode
         self.metadata = {**type(self).metadata, "render_fps": 1 / control_period}  # type: ignore[misc]
-        self._observation_kind = observation
-        self._base = self.task.equipped(as_design(design))
-        self._variation = None if vary is None else parse_variation(vary, self._base)
-        self._episodes_per_design, self._episodes_left = episodes_per_design, 0
-        self._nominal, self._factors = self._base, dict[str, float]()
-        self.task.disturb.check(self._base)
-        self.robot, self.observation = self._build(self._base)
+        base = self.task.equipped(as_design(design))
+        variation = None if vary is None else parse_variation(vary, base)
+        self._set(self.task, base, Draws(base, variation, episodes_per_design, self.task.disturb), observation)
         self.task.disturb.sensors(np.random.default_rng(0)).check(self.observation.parts)
-        self.observation_space: spaces.Box = _box(self.observation)
-        self.action_space: spaces.Box = spaces.Box(-1.0, 1.0, (len(self.robot.drives),), dtype=np.float32)
-        self.episode: Episode | None = None
         self.watcher: Watcher | None = None  # looks on while the robot moves
-        self._fallen: RobotDesign | None = None
-        self._closed = False
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -171,49 +156,39 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
             nominal = self.task.equipped(as_design(design))
             self.task.disturb.check(nominal)
             self._use(nominal)
-            self._nominal = nominal
-        elif self._variation and self._episodes_per_design:
-            redraw = seed is not None or not self._episodes_left
-            self._episodes_left = (self._episodes_per_design if redraw else self._episodes_left) - 1
+            self._draws.nominal = nominal
+        else:
+            redraw = self._draws.due(seed is not None)
         episode = self._begin(options, redraw)
         self._warn_if_fallen(FALLEN)
         info = episode.start._asdict() | ({"redrawn": self._redrawn} if self._redrawn else {})
         if episode.faults:
-            info["disturbed"] = self._factors | episode.faults.as_dict()
+            info["disturbed"] = self._draws.factors | episode.faults.as_dict()
         return self._seen(episode), info
 
     def _begin(self, options: dict[str, Any], redraw: bool) -> Episode:
         """An episode whose robot has come to rest: another design of the variation where one does not."""
-        disturb = self.task.disturb
+        draws = self._draws
         for self._redrawn in range(REDRAWS):
-            if redraw and self._variation:
-                self._use(self._variation.draw(self._base, self.np_random))
-                self._nominal = self.robot.design
-            if disturb.rebuilds:
-                built, self._factors = disturb.draw(self._nominal, self.np_random)
-                self._use(built)
+            if redraw:
+                self._use(draws.draw(self.np_random))
+                draws.nominal = self.robot.design
+            if draws.rebuilds:
+                self._use(draws.build(self.np_random))
             self.episode = Episode(self.robot, self.task, self.np_random, options)
             if not self.episode.diverged:
                 return self.episode
-            redraw = bool(self._variation and self._episodes_per_design)
-            if not (redraw or disturb.rebuilds):
+            redraw = draws.varies
+            if not (redraw or draws.rebuilds):
                 break
         raise SimulationError(f"no episode can begin: the robot {self.robot.design.name!r} diverged "
                               f"{self.episode.ended if self.episode else ''}; "
                               f"take a smaller time step than dt = {self.dt:g} s, or another design")  # fmt: skip
 
-    def _warn_if_fallen(self, left: float) -> None:
-        """Say once of a design that with it an episode began, or ended, flat on the ground."""
-        episode, design = self.episode, self.robot.design
-        if episode and not episode.diverged and design is not self._fallen and has_fallen(self.robot, left):
-            self._fallen = design
-            warnings.warn(f"robot {design.name!r} has fallen flat; tensegym.standing_verdict(design) says what would "
-                          "hold it", UserWarning, stacklevel=3)  # fmt: skip
-
     def step(self, action: NDArray[Any]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Command the drives and hold for a control period. Raises DesignError for what is no action, and
         SimulationError before the first reset; the environment is as it was then."""
-        command = self._checked(action)
+        command = as_action(action, self.action_space.shape)
         episode = self._running()
         terms = episode.advance(self.robot.angles_of(command), self.substeps, self.watcher)
         info: dict[str, Any] = {"reward_terms": terms, "gait": episode.gait.as_dict()}
@@ -224,62 +199,6 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         if self.render_mode == "human":
             self.render()
         return self._seen(episode), sum(terms.values()), episode.ended is not None, False, info
-
-    def render(self) -> NDArray[np.uint8] | None:
-        """(360, 480, 3) picture that follows the robot, cables coloured by tension, an arrow where it is to go; None in
-        human mode."""
-        if self.render_mode == "rgb_array":
-            return render(self.robot, direction=self.episode.bearing.direction if self.episode else None)
-        if self.render_mode == "human":
-            draw_in_window(self.robot)
-        return None
-
-    def close(self) -> None:
-        """Free the physics client; the environment cannot be used again."""
-        self._closed = True
-        self.robot.close()
-
-    def _check_open(self) -> None:
-        if self._closed:
-            raise SimulationError("the environment is closed: make another one")
-
-    def _build(self, design: RobotDesign) -> tuple[TensegrityRobot, Observation]:
-        gui = self.render_mode == "human"
-        robot = self.task.robot(design, gui)
-        try:
-            return robot, make_observation(self._observation_kind, robot, self._variation)
-        except BaseException:
-            robot.close()
-            raise
-
-    def _use(self, design: RobotDesign) -> None:
-        """Put another robot into this environment. Raises DesignError where it observes other parts."""
-        robot, new = self._build(design)
-        if [(p.name, p.rows) for p in new.parts] != [(p.name, p.rows) for p in self.observation.parts]:
-            robot.close()
-            rows = ", ".join(
-                f"{p.name} {p.rows} (here {q.rows})" for p, q in zip(new.parts, self.observation.parts, strict=True)
-                if p.rows != q.rows
-            )  # fmt: skip
-            raise DesignError(
-                f"design {design.name!r} observes {new.bound.size} values, this environment "
-                f"{self.observation.bound.size}: {rows}; make an environment for it"
-            )
-        self.robot.close()
-        self.robot, self.observation, self.observation_space = robot, new, _box(new)
-
-    def _checked(self, action: Any) -> FloatArray:
-        """(w,) the action within its bounds."""
-        shape = self.action_space.shape
-        try:
-            values = np.asarray(action, dtype=float)
-        except (TypeError, ValueError, OverflowError):
-            raise DesignError(f"an action has shape {shape}, one number a drive; given {show(action)}") from None
-        if values.shape != shape:
-            raise DesignError(f"an action has shape {shape}, one entry a drive; given {values.shape}")
-        if not np.isfinite(values).all():
-            raise DesignError(f"action {values.tolist()} has an entry that is no finite number; give -1 to 1 a drive")
-        return np.clip(values, -1, 1)
 
     def _running(self) -> Episode:
         self._check_open()
@@ -293,7 +212,3 @@ class RollingEnv(gym.Env[np.ndarray, np.ndarray], EzPickle):
         if episode.diverged:
             return np.zeros(self.observation_space.shape, np.float32)
         return self.observation.see(self.robot, episode.bearing, episode.reading)
-
-
-def _box(observation: Observation) -> spaces.Box:
-    return spaces.Box(-observation.bound, observation.bound, dtype=np.float32)

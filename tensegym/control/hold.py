@@ -15,7 +15,7 @@ from tensegym.errors import InputError
 from tensegym.files import write_json
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.structure.faces import Faces
-from tensegym.tables import Checked, bounded, fill, in_file, noted, read_json
+from tensegym.tables import Checked, bounded, noted, read_records
 
 from .tipping import current_face
 
@@ -95,11 +95,4 @@ def save_holds(holds: Sequence[Hold], path: Path) -> None:
 
 def load_holds(path: Path) -> list[Hold]:
     """Read what `save_holds` wrote. Raises InputError naming the row and the field, or FileNotFoundError."""
-    if not path.is_file():
-        raise FileNotFoundError(f"no table of holds {path}; make one with `python benchmarks/holds.py`")
-    data = read_json(path, "table of holds", InputError)
-    rows = data.get("holds") if isinstance(data, dict) else data
-    with in_file(f"table of holds {path}"):
-        if not isinstance(rows, list) or not rows:
-            raise InputError("holds must be a list of one row or more")
-        return [fill(Hold, row, f"holds row {number}", InputError) for number, row in enumerate(rows, 1)]
+    return read_records(path, "holds", Hold, "python benchmarks/holds.py", InputError)

@@ -16,7 +16,7 @@ from tensegym.errors import DesignError, InputError
 from tensegym.files import write_json
 from tensegym.robot.reading import heading_rotation
 from tensegym.robot.robot import TensegrityRobot
-from tensegym.tables import Checked, bounded, fill, in_file, read_json, show
+from tensegym.tables import Checked, bounded, read_records
 
 from .bearing import Bearing
 from .tipping import Pull, Tip, current_face, face_direction, tip_table
@@ -103,11 +103,4 @@ def save_table(table: Sequence[Tip], path: Path) -> None:
 
 def load_table(path: Path) -> list[Tip]:
     """Read what `save_table` wrote. Raises InputError naming the row and the field, or FileNotFoundError."""
-    if not path.is_file():
-        raise FileNotFoundError(f"no table of tips {path}; make one with `tensegym step --all-faces --out DIR`")
-    data = read_json(path, "table of tips", InputError)
-    rows = data.get("tips") if isinstance(data, dict) else data
-    with in_file(f"table of tips {path}"):
-        if not isinstance(rows, list) or not rows:
-            raise InputError(f"tips = {show(rows)} must be a list of one pull or more, with what it did")
-        return [fill(Tip, row, f"tips row {number}", InputError) for number, row in enumerate(rows, 1)]
+    return read_records(path, "tips", Tip, "tensegym step --all-faces --out DIR", InputError)

@@ -11,19 +11,18 @@ import numpy as np
 from tensegym.arrays import FloatArray, IntArray, frozen
 from tensegym.errors import DesignError, FlexureError
 from tensegym.structure import structure as structures
-from tensegym.structure.equilibrium import shared_compressions
+from tensegym.structure.equilibrium import compressions, shared_compressions
 from tensegym.structure.structure import Structure
 from tensegym.tables import bounded, check_fields, noted, one_line, parsed
 
 from .groups import Group, check_groups, column, groups_from, of_members
 from .parameters import Drive, ElasticCable, Keep, Payload, Rod, RodFlexure, StiffCable
-from .prestress import prestressed
+from .prestress import check_stretch, prestressed
 from .shape import Shape, check_shape, shape_of
+from .split_rod import half_length, split_buckling_load, standing_pin
 
 if TYPE_CHECKING:
     from tensegym.flexure.models.rod_pin import RodPin
-
-PIN_TOLERANCE = 1.25  # of the buckling load with a split rod's pin over that with its hinge
 
 
 @dataclass(frozen=True)
@@ -74,16 +73,8 @@ class RobotDesign:
 
     def _check_lengths(self) -> None:
         """Refuse cables that their pretension stretches from nothing."""
-        free = self.standing.lengths(self.standing.cables) - 2 * self.attachment_radius
-        broken = np.flatnonzero(self.cable_natural_lengths <= 0)
-        if len(broken):
-            worst = broken[np.argmin(free[broken])]
-            cable, tension = self.each_cable[worst], float(self.rest_tensions[worst])
-            limit = cable.stiffness * free[worst]
-            raise DesignError(
-                f"ElasticCable.pretension = {tension!r} stretches a cable of {free[worst]:.4g} m "
-                f"from nothing; at stiffness {cable.stiffness:g} N/m it must be below {limit:.4g} N"
-            )
+        rest = self.standing.lengths(self.standing.cables) - 2 * self.attachment_radius
+        check_stretch(self.each_cable, self.rest_tensions, rest, self.cable_natural_lengths)
         if self.payload is not None and self.payload_natural_length <= 0:
             raise DesignError(
                 f"Payload.pretension = {self.payload.pretension!r} leaves its cables no natural length "
@@ -97,25 +88,10 @@ class RobotDesign:
         if len(self.structure.shared):
             raise DesignError(f"RodFlexure: node {self.structure.shared[0] + 1} is on more than one rod; rods that "
                               "share nodes cannot be split, leave [flexure] out")  # fmt: skip
-        compression = self.rod_compressions
         for rod in self.flexible_rods.tolist():
-            limit = self.buckling_load(rod)
-            if compression[rod] >= limit:
-                a, b = self.structure.rods[rod] + 1
-                raise DesignError(
-                    f"RodFlexure: the prestress compresses rod {a}-{b} by {compression[rod]:.4g} N, over the "
-                    f"{limit:.4g} N at which its {self.flexure.hinge} buckles; thicken the hinge (thickness = "
-                    f"{self.flexure.thickness:g} m) or lower ElasticCable.pretension"
-                )
-            pin = self._fitted_pin(rod)
-            ratio = pin.buckling_ratio
-            if not 1 / PIN_TOLERANCE <= ratio <= PIN_TOLERANCE:
-                raise DesignError(
-                    f"RodFlexure: no pin stands for a {self.flexure.hinge} of length = {self.flexure.length:g} m: "
-                    f"with one the rod would buckle at {ratio:.3g} times its load, outside [{1 / PIN_TOLERANCE:g}, "
-                    f"{PIN_TOLERANCE:g}]; take a shorter hinge, or one that turns rather than shifts"
-                )
-            self.rod_pins[rod] = pin
+            a, b = self.structure.rods[rod] + 1
+            length, compression = float(self.standing.rod_lengths[rod]), float(self.rod_compressions[rod])
+            self.rod_pins[rod] = standing_pin(self.flexure, length, compression, f"{a}-{b}")
 
     @property
     def standing(self) -> Structure:
@@ -190,49 +166,25 @@ class RobotDesign:
         """(r,) force along each rod at rest, positive in compression [N]."""
         if len(self.standing.shared):
             return frozen(shared_compressions(self.standing, self.rest_tensions))
-        nodes, cables = self.standing.nodes, self.standing.cables
-        span = nodes[cables[:, 1]] - nodes[cables[:, 0]]
-        lengths = np.linalg.norm(span, axis=1)
+        lengths = self.standing.lengths(self.standing.cables)
         stretch = lengths - 2 * self.attachment_radius - self.cable_natural_lengths
-        pull = (column(self.each_cable, "stiffness") * stretch / lengths)[:, None] * span
-        forces = np.zeros_like(nodes)
-        np.add.at(forces, cables[:, 0], pull)
-        np.add.at(forces, cables[:, 1], -pull)
-        first, last = self.standing.rods.T
-        along = (nodes[last] - nodes[first]) / self.standing.rod_lengths[:, None]
-        return frozen(((forces[first] - forces[last]) * along).sum(axis=1) / 2)
+        return frozen(compressions(self.standing, column(self.each_cable, "stiffness") * stretch))
 
     def half_length(self, rod: int) -> float:
         """Of the tube on either side of a split rod's hinge [m]. Raises DesignError when the hinge fills the rod."""
         assert self.flexure is not None
-        half = (float(self.standing.rod_lengths[rod]) - self.flexure.length) / 2
-        if half <= 0:
-            raise DesignError(f"RodFlexure.length = {self.flexure.length!r} is outside (0, {self.length:g}) m: "
-                              "the hinge is longer than the rod")  # fmt: skip
-        return half
+        return half_length(self.flexure, float(self.standing.rod_lengths[rod]))
 
     def buckling_load(self, rod: int) -> float:
         """Compression under which a split rod bends out of line [N]."""
-        from tensegym.flexure.fem.buckling import buckling_load
-
         assert self.flexure is not None
-        half = self.half_length(rod)
-        return buckling_load(self.flexure.geometry(), half, half)
+        return split_buckling_load(self.flexure, float(self.standing.rod_lengths[rod]))
 
     @property
     def rod_pins(self) -> dict[int, RodPin]:
         """Of each split rod, by its index, the pin and the torsion spring that stand for its hinge: fitted under the
         rod's prestress where the design is made."""
         return self._rod_pins  # type: ignore[attr-defined]
-
-    def _fitted_pin(self, rod: int) -> RodPin:
-        from tensegym.flexure.models.rod_pin import rod_pin
-
-        assert self.flexure is not None
-        half = self.half_length(rod)
-        # rounded, so that equal rods share one fit; a rod that two-way cables stretch is fitted without load
-        compression = max(0.0, round(float(self.rod_compressions[rod]), 6))
-        return rod_pin(self.flexure.geometry(), half, half, self.flexure.max_angle, compression)
 
     @property
     def cable_natural_lengths(self) -> FloatArray:
@@ -252,12 +204,8 @@ class RobotDesign:
     def payload_natural_length(self) -> float:
         """Of the payload's cables, from a rod's mid-point to the ball's surface [m]."""
         assert self.payload is not None
-        if self.payload.natural_length is not None:
-            return self.payload.natural_length
-        nodes, rods = self.standing.nodes, self.standing.rods
-        middles = nodes[rods].mean(axis=1)
-        reach = np.linalg.norm(middles - middles.mean(axis=0), axis=1).min()
-        return reach - self.payload.radius - self.payload.pretension / self.payload.stiffness
+        middles = self.standing.nodes[self.standing.rods].mean(axis=1)
+        return self.payload.tied_length(float(np.linalg.norm(middles - middles.mean(axis=0), axis=1).min()))
 
     @property
     def mass(self) -> float:

@@ -148,6 +148,11 @@ class Payload(Checked, error=DesignError):
     natural_length: float | None = bounded(0, 100, None, "m", "given, it overrides the pretension", open_low=True)
     two_way: bool = noted(False, "push as well as pull")
 
+    def tied_length(self, reach: float) -> float:
+        """Natural length [m] of its cables, which end on its surface, with the nearest rod at ``reach`` [m]."""
+        given = self.natural_length
+        return reach - self.radius - self.pretension / self.stiffness if given is None else given
+
 
 @dataclass(frozen=True)
 class RodFlexure(Checked, error=DesignError):

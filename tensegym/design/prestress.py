@@ -87,3 +87,15 @@ def _factors(cables: IntArray, groups: Sequence[Group]) -> tuple[IntArray, bool]
     if not kinds:
         return np.arange(len(cables)), True
     return np.array([kinds.index(name) if name else -1 for name in names], dtype=np.int64), "" not in names
+
+
+def check_stretch(cables: Sequence[ElasticCable], tensions: FloatArray, rest: FloatArray, natural: FloatArray) -> None:
+    """Raise DesignError, naming the worst, where cables of lengths at rest (c,) [m] have no natural length (c,) [m]."""
+    broken = np.flatnonzero(natural <= 0)
+    if len(broken):
+        worst = broken[np.argmin(rest[broken])]
+        limit = cables[worst].stiffness * rest[worst]
+        raise DesignError(
+            f"ElasticCable.pretension = {float(tensions[worst])!r} stretches a cable of {rest[worst]:.4g} m "
+            f"from nothing; at stiffness {cables[worst].stiffness:g} N/m it must be below {limit:.4g} N"
+        )

@@ -176,6 +176,20 @@ def in_words(tension: ArrayLike) -> str:
     return f"a tension of {high:g} N in every cable" if low >= high else f"one of {low:g} to {high:g} N in the cables"
 
 
+def compressions(structure: Structure, tension: FloatArray) -> FloatArray:
+    """(r,) force along each rod under tensions (c,) [N] of the elastic cables, positive in compression [N]; of rods
+    that share no node."""
+    nodes, cables = structure.nodes, structure.cables
+    span = nodes[cables[:, 1]] - nodes[cables[:, 0]]
+    pull = (tension / np.linalg.norm(span, axis=1))[:, None] * span
+    forces = np.zeros_like(nodes)
+    np.add.at(forces, cables[:, 0], pull)
+    np.add.at(forces, cables[:, 1], -pull)
+    first, last = structure.rods.T
+    along = (nodes[last] - nodes[first]) / structure.rod_lengths[:, None]
+    return np.asarray(((forces[first] - forces[last]) * along).sum(axis=1) / 2, dtype=float)
+
+
 def shared_compressions(structure: Structure, tension: ArrayLike) -> FloatArray:
     """(r,) force along each rod that balances tensions [N] of the elastic cables best, positive in compression [N]; for
     rods that share nodes, on which they divide what cables do there."""
