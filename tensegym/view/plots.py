@@ -67,7 +67,7 @@ def _colour(drive: int) -> str:
 
 
 def _plot(page: Page, title: str, names: list[str], limit: float) -> tuple[Any, float]:
-    bare = {"points": {"show": False}}
+    bare: dict[str, Any] = {"points": {"show": False}}
     lines = [{"label": name, "stroke": _colour(n), "width": 1.5, **bare} for n, name in enumerate(names)]
     limit_line = {"label": "limit", "stroke": "#888888", "width": 1, "dash": [6, 4], **bare}
     empty = tuple(np.zeros(1) for _ in range(len(lines) + 2))
