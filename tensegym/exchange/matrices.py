@@ -14,7 +14,7 @@ from tensegym.arrays import FloatArray, IntArray
 from tensegym.errors import InputError
 from tensegym.tables import number_of, read_text
 
-from .table import Imported, length_of, merged
+from .table import Imported, kept, length_of, merged
 
 LARGEST = 4_000_000  # bytes
 
@@ -39,7 +39,8 @@ def read_matrices(
     made = merged(points, [(a, b) for pairs in members for a, b in pairs.tolist()])
     pairs = [(made.place[each] + 1).tolist() for each in members]
     structure = {"nodes": made.nodes.tolist(), "rods": pairs[0], "cables": pairs[1], "stiff_cables": []}
-    return Imported({"name": name, "structure": structure}, made.notes)
+    found = Imported({"name": name, "structure": structure}, made.notes)
+    return kept(found, np.ones(len(pairs[1])), f"matrices {nodes}")
 
 
 def _matrix(path: Path) -> FloatArray:

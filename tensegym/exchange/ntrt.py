@@ -20,7 +20,7 @@ from tensegym.tables import one_line, show
 
 from .ntrt_builders import Builders, RodKind, read_builders
 from .ntrt_parts import Model, Pair
-from .table import Imported, length_of, merged
+from .table import Imported, kept, length_of, merged
 
 UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])  # its y axis, which is up, onto z
 
@@ -64,11 +64,12 @@ def read_ntrt(path: str | Path, units: str | None = None, pretension: float | No
         group = {"pairs": [place(pair) for pair, other in cables if other == tag], "stiffness": kind.stiffness,
                  "damping": kind.damping, "pretension": pull}  # fmt: skip
         table.setdefault("cables", {})[_group_name(tag)] = group
+    pulls = {tag: float(table["cables"][_group_name(tag)]["pretension"]) for _, tag in cables}
     table |= _rods(made.nodes, [place(pair) for pair, _ in rods], [builders.rods[tag] for _, tag in rods])
     notes = list(made.notes)
     if builders.left_out:
         notes.append(f"left out, as a design has no place for it: {', '.join(builders.left_out)}")
-    return Imported(table, tuple(notes))
+    return kept(Imported(table, tuple(notes)), np.array([pulls[tag] for _, tag in cables]), f"NTRT model {path}")
 
 
 def _members(model: Model, builders: Builders, where: str) -> tuple[list[tuple[Pair, str]], list[tuple[Pair, str]]]:

@@ -10,7 +10,9 @@ from scipy.spatial import cKDTree
 
 from tensegym.arrays import FloatArray, IntArray
 from tensegym.errors import InputError
-from tensegym.tables import one_line
+from tensegym.structure.equilibrium import BALANCE_TOLERANCE, out_of_balance
+from tensegym.structure.structure import Structure
+from tensegym.tables import in_file, one_line
 
 UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 """Lengths [m] of what a file may be in."""
@@ -71,3 +73,19 @@ def merged(nodes: FloatArray, used: Sequence[tuple[int, int]]) -> Merged:
     if unused := len(given) - joined - len(kept):
         notes.append(f"{unused} nodes without a member were left out")
     return Merged(given[kept], place[first], tuple(notes))
+
+
+def kept(found: Imported, tensions: FloatArray, where: str) -> Imported:
+    """The same, with [keep] shape where rods share nodes and tensions (c,) of the cables, of any unit, do not balance
+    them: form finding moves none of those. ``where`` names the file in what a structure is refused for."""
+    parts = found.table["structure"]
+    rods = np.array(parts["rods"], dtype=np.int64).reshape(-1, 2) - 1
+    if np.bincount(rods.ravel(), minlength=1).max() < 2:
+        return found
+    with in_file(where):
+        structure = Structure(np.array(parts["nodes"]), rods, np.array(parts["cables"]) - 1, rods[:0])
+    if np.abs(out_of_balance(structure, tensions)).max() <= BALANCE_TOLERANCE * tensions.max():
+        return found
+    note = ("rods share nodes, which form finding does not move: [keep] shape = true holds them as they are, by the "
+            "tensions nearest to those given")  # fmt: skip
+    return Imported(found.table | {"keep": {"shape": True}}, (*found.notes, note))

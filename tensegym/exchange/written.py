@@ -6,7 +6,7 @@ from itertools import groupby
 
 import numpy as np
 
-from tensegym.arrays import IntArray
+from tensegym.arrays import FloatArray, IntArray
 from tensegym.design.design import RobotDesign
 from tensegym.design.groups import group_names
 from tensegym.design.parameters import ElasticCable, Rod
@@ -28,7 +28,8 @@ def ntrt_text(design: RobotDesign, units: str = "m") -> str:
     lines += [f"  n{i}: [{', '.join(_number(x) for x in xyz + 0.0)}]" for i, xyz in enumerate(nodes, 1)]
     pairs, builders = ["pair_groups:"], ["builders:"]
     names = group_names(design.cables, structure.cables)
-    for tag, rows in _alike([f"cable_{name}" if name else "cables" for name in names]):
+    tags = [f"cable_{name}" if name else "cables" for name in names]
+    for tag, rows in _alike(_by_tension(tags, design.rest_tensions)):
         cable: ElasticCable = design.each_cable[rows[0]]
         pull = float(design.rest_tensions[rows[0]])
         pairs += _rows(tag, structure.cables[rows])
@@ -44,6 +45,18 @@ def ntrt_text(design: RobotDesign, units: str = "m") -> str:
         builders += _builder(tag, "tgRodInfo", {"radius": radius, "density": rod.mass / (np.pi * radius**2 * length),
                                                 "friction": design.friction})  # fmt: skip
     return "\n".join([*lines, *pairs, *builders, ""])
+
+
+def _by_tension(tags: list[str], tensions: FloatArray) -> list[str]:
+    """A tag of its own for each tension of a group, as cables have whose nodes are kept."""
+    unlike: dict[str, list[str]] = {}
+    made = []
+    for tag, tension in zip(tags, tensions.tolist(), strict=True):
+        seen, pull = unlike.setdefault(tag, []), f"{tension:.9g}"
+        if pull not in seen:
+            seen.append(pull)
+        made.append(f"{tag}-{seen.index(pull) + 1}" if seen.index(pull) else tag)
+    return made
 
 
 def _numbers(values: list[tuple[Rod, float]]) -> list[int]:
