@@ -11,7 +11,8 @@ ROOT = Path(__file__).parents[1]
 OWN = ("", "tutorials", "project")  # folders of docs whose pages are written by hand
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md",
          *sorted(page for folder in OWN for page in (ROOT / "docs" / folder).glob("*.md"))]  # fmt: skip
-FOLDERS = {path.name for path in ROOT.iterdir() if path.is_dir()} | {p.name for p in (ROOT / "tensegym").iterdir()}
+WRITTEN = {"runs", "build", "dist", "demo"}  # by commands
+FOLDERS = {path.name for base in (ROOT, ROOT / "tensegym") for path in base.iterdir() if path.is_dir()} - WRITTEN
 
 
 def named(text):
