@@ -1,18 +1,14 @@
-"""Rods that share a node: momentum, energy, a double pendulum against its equations."""
+"""Rods that share a node: momentum, energy, a frame; a double pendulum is among the problems of the validation page."""
 
 import numpy as np
-import pybullet
 import pytest
-from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from tensegym.design.design import RobotDesign
-from tensegym.design.groups import Group
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.structure.structure import Structure
 
 NONE = np.zeros((0, 2), dtype=int)
-GRAVITY = 9.81
 
 
 def bare(nodes, pairs, **changes):
@@ -81,56 +77,3 @@ def test_a_frame_of_rods_flies_as_the_rigid_body_that_it_is():
     assert changed < 1e-12
     assert gap < 1e-12
     assert np.ptp(energies) / energies[0] < 1e-4
-
-
-def pendulum(time, state, first, second):
-    """Of two rods, each of mass m, moment i about its middle and length l, hung one from the other; angles from the
-    vertical. (Lagrange's equations.)"""
-    (m1, i1, l1), (m2, i2, l2) = first, second
-    a, b, u, v = state
-    across, along = m2 * l1 * l2 / 2 * np.sin(a - b), m2 * l1 * l2 / 2 * np.cos(a - b)
-    mass = [[i1 + m1 * l1**2 / 4 + m2 * l1**2, along], [along, i2 + m2 * l2**2 / 4]]
-    force = [-across * v**2 - (m1 / 2 + m2) * l1 * GRAVITY * np.sin(a),
-             across * u**2 - m2 * l2 / 2 * GRAVITY * np.sin(b)]  # fmt: skip
-    return [u, v, *np.linalg.solve(mass, force)]
-
-
-def test_a_double_pendulum_swings_as_its_equations_say():
-    """Its upper rod hangs from the end of a third one, which is put back in its place after every step."""
-    first, second, start, dt = 0.3, 0.25, np.array([1.0, 0.4]), 1e-3
-    sides = np.array([[np.sin(angle), 0, -np.cos(angle)] for angle in start])
-    nodes = [[0, -0.3, 0], [0, 0, 0], first * sides[0], first * sides[0] + second * sides[1]]
-    heavy = Group("base", ((0, 1),), {"tube_mass": 100.0, "end_mass": 100.0})
-    design = bare(nodes, [(0, 1), (1, 2), (2, 3)], rods=(heavy,))
-    rods = [(design.rod(i).mass, design.rod(i).transverse_inertia(length), length)
-            for i, length in ((1, first), (2, second))]  # fmt: skip
-    at_rest = [*start, 0.0, 0.0]
-    times = np.arange(0, 2.0, 20 * dt)
-    angles = solve_ivp(pendulum, (0, 2.0), at_rest, t_eval=times, args=rods, rtol=1e-10, atol=1e-12).y[:2]
-    wanted = np.array([first * np.sin(angles[0]) + second * np.sin(angles[1]),
-                       -first * np.cos(angles[0]) - second * np.cos(angles[1])])  # fmt: skip
-    # velocities live half a step before poses: a little before it was let go
-    rates = -dt / 2 * np.array(pendulum(0, at_rest, *rods)[2:])
-    velocities = np.zeros((3, 6))
-    velocities[1:, 4] = -rates  # about y, which turns x towards -z
-    ends = [rate * length * np.array([-side[2], 0, side[0]])
-            for rate, length, side in zip(rates, (first, second), sides, strict=True)]  # fmt: skip
-    velocities[1, :3], velocities[2, :3] = ends[0] / 2, ends[0] + ends[1] / 2
-    found, gap = [], 0.0
-    with TensegrityRobot(design, dt=dt) as robot:
-        robot.reset_rotated(Rotation.identity(), velocities, height=2.0)
-        base, place = robot.world.body_ids[0], robot.poses_in_world[0].copy()
-        pivot = robot.node_positions_in_world()[1]
-        for step in range(2000):
-            if step % 20 == 0:
-                found.append(robot.node_positions_in_world()[3] - pivot)
-                gap = max(gap, apart(robot))
-            robot.step(1)
-            pybullet.resetBasePositionAndOrientation(base, place[:3], place[3:], physicsClientId=robot.world.client)
-            pybullet.resetBaseVelocity(base, [0, 0, 0], [0, 0, 0], physicsClientId=robot.world.client)
-            robot.world._stale = True
-            robot._state.last_poses[0] = place
-    found = np.array(found)
-    assert np.abs(found[:, 1]).max() < 1e-9  # in its plane
-    assert np.abs(found[:, [0, 2]].T - wanted).max() < 1e-3 * (first + second)
-    assert gap < 2e-5  # what the base would fall in a step, g dt^2

@@ -1,10 +1,14 @@
 """The problems of the validation page in small, in every engine; and that what is wrong is caught."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
 from tensegym.bullet import bodies as bullet_bodies
+from tensegym.engine import world
 from tensegym.robot.engines import ENGINES
+from tensegym.robot.robot import TensegrityRobot
 from tensegym.validation.free_bodies import FreeBodies, body
 from tensegym.validation.problems import (
     PROBLEMS,
@@ -16,6 +20,7 @@ from tensegym.validation.problems import (
     pendulum,
     rolling,
     rolling_ball,
+    shared_nodes,
 )
 from tensegym.validation.problems import torque_free as turning
 
@@ -27,7 +32,8 @@ def failing(findings):
 
 
 @engines
-@pytest.mark.parametrize("measure", [turning.kane, rolling_ball.bowling, flight_order.flight_order],
+@pytest.mark.parametrize("measure", [turning.kane, rolling_ball.bowling, flight_order.flight_order,
+                                     shared_nodes.shared_nodes],
                          ids=lambda measure: measure.__name__)  # fmt: skip
 def test_every_row_passes(measure, engine):
     pytest.importorskip(engine)
@@ -117,6 +123,18 @@ def test_a_step_of_the_engine_alone_is_caught(monkeypatch):
     """Without what mends the turning, a spinning rod gains momentum."""
     monkeypatch.setattr(FreeBodies, "run", lambda self, count: [self.step(np.zeros((1, 6))) for _ in range(count)])
     assert "J / I = 0.5: angular momentum, relative change" in failing(turning.kane("pybullet"))
+
+
+def test_rods_that_nothing_joins_are_caught(monkeypatch):
+    right = world.engine_substep
+
+    def loose(model, *args):
+        right(model._replace(joint_bodies=model.joint_bodies[:0]), *args)
+
+    monkeypatch.setattr(world, "engine_substep", loose)
+    monkeypatch.setattr(shared_nodes, "TensegrityRobot", partial(TensegrityRobot, compiled=False))
+    *_, widest = shared_nodes.chain_in_flight("pybullet", 1e-3, seconds=0.1)
+    assert widest > 1e-2
 
 
 @engines

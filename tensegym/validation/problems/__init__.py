@@ -12,6 +12,7 @@ from . import (
     pendulum,
     rolling,
     rolling_ball,
+    shared_nodes,
     side_by_side,
     torque_free,
 )
@@ -43,6 +44,8 @@ PROBLEMS: dict[str, Problem] = {
     "princeton": Problem(_TRUSTED, "Princeton beam, linear tips", "beam theory; Dowell and Traybar 1975",
                          beams.princeton, NONE),
     "wittrick": Problem(_TRUSTED, "Cross spring", "Wittrick 1951; Haringx 1949", beams.wittrick, NONE),
+    "joints": Problem("Rods that share a node", "Ball joints", "conservation laws; Lagrange's equations; statics",
+                      shared_nodes.shared_nodes, minutes=0.2),
     "stopping": Problem(_CONTACT, "Stopping distance of a rod", "v^2 / (2 mu g)", friction.stopping),
     "slope": Problem(_CONTACT, "Slope at which rod and robot let go", "atan(mu); statics", friction.slope),
     "creep": Problem(_CONTACT, "Creep at rest", "Coulomb: what is at rest stays", friction.creep, minutes=0.3),
