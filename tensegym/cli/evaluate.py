@@ -32,7 +32,7 @@ class Evaluate:
 
     policy: str = "rolling"
     """A run's folder, or a shipped policy: rolling, onboard, flexible, carry, climb, steep, sprint, agile,
-    agile_onboard, steer, steer_first, robust, conditioned."""
+    agile_onboard, steer, steer_first, robust, four_rod, conditioned."""
     out: Path = Path("evaluation")
     """Folder for metrics.json, gait.png and roll.mp4."""
     episodes: Count = 100
