@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
@@ -17,14 +18,14 @@ from tensegym.robot.robot import TensegrityRobot
 from tensegym.structure.structure import Structure
 from tensegym.validation.row import Findings, Row
 
-CHAIN = [[0, 0, 0], [0.3, 0, 0], [0.3, 0.3, 0.05], [0.4, 0.4, 0.3]]
+CHAIN = [[0.0, 0.0, 0.0], [0.3, 0.0, 0.0], [0.3, 0.3, 0.05], [0.4, 0.4, 0.3]]  # m
 HANGING = 0.3, 0.25  # m, rods of the double pendulum
 LET_GO = 1.0, 0.4  # rad from the vertical
 SPINE = {"structure": {"builder": "spine", "vertebrae": 2}, "attachment_radius": 0.0, "friction": 2.0}
 SLOPES = {"stands": 0.0, "bends, on a slope of 0.2 rad": 0.2}
 
 
-def bare(nodes: Sequence[Sequence[float]], **changes: object) -> RobotDesign:
+def bare(nodes: Sequence[ArrayLike], **changes: object) -> RobotDesign:
     """A chain of rods alone, from node to node."""
     none, count = np.zeros((0, 2), dtype=int), len(nodes)
     rods = np.column_stack([np.arange(count - 1), np.arange(1, count)])
@@ -78,11 +79,11 @@ def double_pendulum(engine: str, dt: float, seconds: float = 2.0) -> tuple[float
     """
     (first, second), start, every = HANGING, np.array(LET_GO), 20
     sides = np.stack([np.sin(start), np.zeros(2), -np.cos(start)], axis=1)
-    nodes = [[0, -0.3, 0], [0, 0, 0], first * sides[0], first * sides[0] + second * sides[1]]
+    nodes: list[ArrayLike] = [[0, -0.3, 0], [0, 0, 0], first * sides[0], first * sides[0] + second * sides[1]]
     design = bare(nodes, rods=(Group("base", ((0, 1),), {"tube_mass": 100.0, "end_mass": 100.0}),))
     rods = [np.array([design.rod(i).mass, design.rod(i).transverse_inertia(length), length])
             for i, length in ((1, first), (2, second))]  # fmt: skip
-    given = *rods, design.gravity
+    given = rods[0], rods[1], design.gravity
     at_rest, times = np.array([*start, 0.0, 0.0]), np.arange(0, seconds, every * dt)
     a, b = solve_ivp(equations, (0, seconds), at_rest, t_eval=times, args=given, rtol=1e-10, atol=1e-12).y[:2]
     wanted = np.stack([first * np.sin(a) + second * np.sin(b), -first * np.cos(a) - second * np.cos(b)], axis=1)
