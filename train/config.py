@@ -48,7 +48,7 @@ class TrainConfig(Checked, error=InputError):
     n_epochs: int = bounded(1, 10**4, 10, "", "passes over the steps of an update")
     learning_rate: float = bounded(0, 1, 4e-4, "", "Adam's, at the start", open_low=True)
     final_learning_rate: float = bounded(0, 1, 5e-5, "", "Adam's, at the end", open_low=True)
-    schedule: int | None = bounded(1, 10**12, None, "", "environment steps over which it falls, where not all of steps")
+    schedule: int | None = bounded(1, 10**12, None, "", "environment steps over which it falls; none: the steps")
     gamma: float = bounded(0, 1, 0.95, "", "discount a step", open_low=True)
     gae_lambda: float = bounded(0, 1, 0.95, "", "weight of later steps in the advantage", open_low=True)
     clip_range: float = bounded(0, 1, 0.2, "", "of the policy's ratio", open_low=True)
@@ -71,7 +71,8 @@ class TrainConfig(Checked, error=InputError):
                 "(n_envs x rollout)"
             )
         if self.schedule is not None and self.schedule < self.steps:
-            raise InputError(f"TrainConfig.schedule = {self.schedule} must be at least the {self.steps} steps")
+            raise InputError(f"TrainConfig.schedule = {self.schedule} must be at least the {self.steps} steps of the "
+                             "training; leave it out, or give that many or more")  # fmt: skip
 
     def learning_rate_at(self, steps: int) -> float:
         """Adam's after so many environment steps: it falls evenly."""

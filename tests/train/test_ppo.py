@@ -93,6 +93,21 @@ def test_a_run_killed_in_its_second_chunk_and_resumed_equals_one_that_was_not(ti
     assert_same(out, tiny_run)
 
 
+def test_a_run_that_ends_early_on_a_schedule_equals_the_first_part_of_the_whole(tiny_run, tiny_config, tmp_path, cli):
+    """What was stopped because it was good enough is made again by a config with that end and the same schedule."""
+    config = yaml.safe_load(tiny_config.read_text()) | {"steps": 2 * STEPS, "schedule": 3 * STEPS}
+    (tmp_path / "early.yaml").write_text(yaml.safe_dump(config))
+    early = tmp_path / "early"
+    assert cli("train", "--config", tmp_path / "early.yaml", "--out", early, "--seed", "7")[0] == 0
+    ends = [read_policy(folder / "checkpoints" / f"{2 * STEPS:09d}") for folder in (early, tiny_run)]
+    for name, value in ends[0].weights.items():
+        np.testing.assert_array_equal(value, ends[1].weights[name])
+    (tmp_path / "early.yaml").write_text(yaml.safe_dump(config | {"schedule": STEPS}))
+    refused = cli("train", "--config", tmp_path / "early.yaml", "--out", tmp_path / "none")
+    assert_refused(refused, f"schedule = {STEPS}", f"{2 * STEPS} steps")
+    assert not (tmp_path / "none").exists()
+
+
 def test_steps_are_rounded_up_to_whole_updates_and_no_further(tiny_config, tmp_path, cli):
     """An update is of 20 steps and a chunk of one of them here; of two, the last one is cut short."""
     config = yaml.safe_load(tiny_config.read_text()) | {"chunk": 2, "steps": 50}
