@@ -48,12 +48,13 @@ class Disturbance(Checked, error=DesignError):
     dead: int = bounded(0, 1000, 0, "", "drives without voltage")
     snapped: int = bounded(0, 1000, 0, "", "elastic cables that snap")
     snap_by: float = bounded(0, 3600, 0.0, "s", "each at a time drawn up to this one")
+    faulty: float = bounded(0, 1, 1.0, "", "how likely each of these drives and cables is to fail in an episode")
     cables: tuple[int, ...] = bounded(1, 10_000, (), "", "elastic cables that snap at the start, by number from 1")
 
     @property
     def on(self) -> bool:
         """Whether anything is."""
-        plain = vars(Disturbance(push=self.push, weak_to=self.weak_to, snap_by=self.snap_by))
+        plain = vars(Disturbance(push=self.push, weak_to=self.weak_to, snap_by=self.snap_by, faulty=self.faulty))
         return plain != vars(self)
 
     @property

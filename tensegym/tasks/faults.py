@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tensegym.arrays import FloatArray
+from tensegym.arrays import FloatArray, IntArray
 from tensegym.design.parameters import Drive
 from tensegym.physics.model import TWO_WAY
 from tensegym.robot.robot import TensegrityRobot
@@ -32,9 +32,11 @@ class Faults:
         self._disturb, self._rng = disturb, rng
         drives, cables = rng.permutation(len(robot.drives)), rng.permutation(robot.model.first_driven)
         counts = np.cumsum([disturb.weak, disturb.stuck, disturb.dead])
-        self.weak, self.stuck, self.dead = np.split(drives[: counts[-1]], counts[:-1])
+        split = np.split(drives[: counts[-1]], counts[:-1])
+        self.weak, self.stuck, self.dead = (self._fails(parts) for parts in split)
         snapping = [(0.0, number - 1) for number in disturb.cables]
-        snapping += [(float(rng.uniform(0, disturb.snap_by)), int(cable)) for cable in cables[: disturb.snapped]]
+        drawn = self._fails(cables[: disturb.snapped])
+        snapping += [(float(rng.uniform(0, disturb.snap_by)), int(cable)) for cable in drawn]
         self._snapping = sorted(snapping)
         self.late = int(rng.integers(disturb.done_late + 1))
         self._commands: deque[FloatArray] = deque([np.zeros(len(drives))] * self.late)
@@ -43,6 +45,10 @@ class Faults:
         params[self.weak, _COLUMN["current_limit"]] *= disturb.weak_to
         params[self.stuck, _COLUMN["speed_limit"]] = 0.0
         params[self.dead, _COLUMN["voltage_limit"]] = 0.0
+
+    def _fails(self, parts: IntArray) -> IntArray:
+        certain = self._disturb.faulty == 1.0
+        return parts if certain else parts[self._rng.random(len(parts)) < self._disturb.faulty]
 
     def command(self, angles: FloatArray) -> FloatArray:
         """What comes of a command (w,): one that was given before, where they come late."""

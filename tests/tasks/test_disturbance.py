@@ -31,7 +31,7 @@ def robot():
 
 def test_off_changes_nothing_and_draws_nothing():
     assert not Disturbance().on
-    assert not Disturbance(push=1.0, weak_to=0.2, snap_by=3.0).on
+    assert not Disturbance(push=1.0, weak_to=0.2, snap_by=3.0, faulty=0.5).on
     plain, off = gym.make(ID).unwrapped, gym.make(ID, disturb={}).unwrapped
     for env in (plain, off):
         env.reset(seed=5)
@@ -93,6 +93,17 @@ def test_drives_that_fail_stand_still_or_give_less(robot):
     assert robot.drive_angles[dead].max() <= 1e-9
     assert peak[weak].max() <= 0.25 * limit + 1e-12
     assert peak.max() > 0.5 * limit
+
+
+def test_parts_fail_as_often_as_the_task_says(robot):
+    """Each of the four by itself: binomial, so within 4 standard deviations of its share in 400 episodes."""
+    fields = {"weak": 1, "stuck": 1, "dead": 1, "snapped": 1, "snap_by": 1.0}
+    named = [begun(robot, seed, **fields, faulty=0.3).faults.as_dict() for seed in range(400)]
+    for part in ("weak", "stuck", "dead", "snapping"):
+        assert abs(np.mean([len(drawn[part]) for drawn in named]) - 0.3) < 4 * np.sqrt(0.3 * 0.7 / 400)
+    alone = [drawn for drawn in named if len(drawn["dead"]) and not len(drawn["stuck"])]
+    assert len(alone) > 20
+    assert not any(begun(robot, seed, **fields, faulty=0.0).faults.as_dict()["snapping"] for seed in range(20))
 
 
 def test_commands_come_late_by_whole_control_steps(robot):
