@@ -25,7 +25,7 @@ Episode = dict[str, float]
 class TrialSpec:
     """What a worker gets. design and controller are tables as in a task file, seeds one an episode.
 
-    bar: a loss; a trial whose mean loss over the first half of its episodes is above it is stopped there.
+    bar: a loss; a trial whose mean loss over the first half of its episodes, rounded up, is above it is stopped there.
     """
 
     number: int
@@ -92,10 +92,11 @@ def run_trial(trial: TrialSpec) -> TrialResult:
 
 def _tried(trial: TrialSpec) -> list[Episode]:
     found: list[Episode] = []
+    half = math.ceil(len(trial.seeds) / 2)
     with closing(iterate(trial.setup(), make_controller(trial.controller), trial.seeds)) as results:
         for result in results:
             found.append(result.scores())
-            if 2 * len(found) == len(trial.seeds) and progress_loss(trial.task, found) > trial.bar:
+            if len(found) == half and progress_loss(trial.task, found) > trial.bar:
                 break
     return found
 

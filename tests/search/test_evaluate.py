@@ -32,10 +32,12 @@ def test_an_episode_is_a_pure_function_of_its_four_arguments(trial):
     assert run_trial(trial).metrics["speed_lps"] == pytest.approx(np.mean([e["speed_lps"] for e in alone]), abs=0)
 
 
-def test_a_trial_that_is_hopeless_half_way_is_stopped(trial):
+@pytest.mark.parametrize(("episodes", "half"), [(2, 1), (3, 2)])
+def test_a_trial_that_is_hopeless_half_way_is_stopped(trial, episodes, half):
+    trial = replace(trial, seeds=(5, 6, 7)[:episodes])
     whole, stopped = run_trial(trial), run_trial(replace(trial, bar=-10.0))
-    assert (whole.episodes, whole.stopped) == (2, False)
-    assert (stopped.episodes, stopped.stopped) == (1, True)
+    assert (whole.episodes, whole.stopped) == (episodes, False)
+    assert (stopped.episodes, stopped.stopped) == (half, True)
 
 
 def test_an_episode_without_a_tip_is_given_up(trial):
