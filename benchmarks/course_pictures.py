@@ -10,6 +10,7 @@ from __future__ import annotations
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import tyro
@@ -18,8 +19,9 @@ from PIL import Image
 
 from tensegym.control.table import make_controller
 from tensegym.files import replace_path
-from tensegym.plotting import new_figure, save
+from tensegym.plotting import COLOURS, new_figure, save
 from tensegym.robot.rendering import render
+from tensegym.robot.sight import FULL_SCALE, tension_colours
 from tensegym.tasks.course import Course
 from tensegym.tasks.episode import Episode
 from tensegym.tasks.motions import as_task
@@ -72,6 +74,7 @@ class Pictures:
                     first.save(fresh, format="webp", save_all=True, append_images=rest, duration=100, quality=60)
         for axis in axes.flat:
             axis.axis("off")
+        _draw_key(axes.flat[-1])
         save(figure, self.picture)
         return "\n".join(lines)
 
@@ -90,6 +93,17 @@ class Pictures:
                     return frames, result.ended
         assert first is not None
         return first
+
+
+def _draw_key(axis: Any) -> None:
+    """What colours and arrow mean."""
+    bar = axis.inset_axes((0.1, 0.62, 0.8, 0.07))
+    bar.imshow(tension_colours(np.linspace(0, FULL_SCALE, 200))[None].astype(np.uint8), aspect="auto",
+               extent=(0, FULL_SCALE, 0, 1))  # fmt: skip
+    bar.set(yticks=(), xlabel="tension of a cable [N]; grey where slack")
+    axis.set(xlim=(0, 1), ylim=(0, 1))
+    axis.annotate("", (0.1, 0.3), (0.3, 0.3), arrowprops={"arrowstyle": "->", "color": COLOURS[0], "lw": 3})
+    axis.text(0.35, 0.3, "wanted direction", va="center")
 
 
 if __name__ == "__main__":

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tensegym.arrays import FloatArray
 from tensegym.design.solids import Solid, middles
 
-from .ground_lines import box_patches, grid_lines, on_ground
+from .ground_lines import box_patches, grid_lines
 from .painting import COLOUR, ITEM_SIZE, KIND, OPACITY, PATCH, POINTS, ROUND, paint
 from .sight import SLACK_BELOW, Sight, tension_colours
+from .surface import draped, on_ground
 
 PIECES = 8  # of a rod or a cable: short ones are painted in the right order
 _PAPER = 248.0
@@ -33,6 +36,7 @@ class Camera:
         if sight.ground is None or len(sight.ground.boxes):
             self._target[2] = sight.centre[2]
         self._distance = 2.9 * sight.length
+        self.place = self._target + self._distance * back
         self._middle = np.array([width / 2, height / 2])
         self.focal = 1.45 * height
 
@@ -41,6 +45,9 @@ class Camera:
         local = (points - self._target) @ self._axes.T
         depth = self._distance - local[..., 2]
         return self._middle + (self.focal / np.maximum(depth, 1e-6))[..., None] * local[..., :2], depth
+
+
+Order = Callable[..., FloatArray]  # np.min, np.mean or np.max
 
 
 class Canvas:
@@ -53,7 +60,7 @@ class Canvas:
 
     def strokes(
         self, ends: FloatArray, colours: ArrayLike, pixels: ArrayLike, *, opacity: ArrayLike = 1.0,
-        radii: FloatArray | None = None, below: bool = False,
+        radii: FloatArray | None = None, by: Order | None = np.mean,
     ) -> None:  # fmt: skip
         """Strokes between ends (k, 2, 3) [m].
 
@@ -62,7 +69,7 @@ class Canvas:
             pixels: (k,), or one: half the width, or the least that rods of ``radii`` (k,) [m] have.
             opacity: (k,), or one, 0 to 1.
             radii: of what is round.
-            below: on the ground, in the order given.
+            by: what of their points' distances says how far away they are; None: on the ground, in the order given.
         """
         at, depth = self.camera(ends)
         half = np.broadcast_to(np.asarray(pixels, dtype=float), len(ends))[:, None]
@@ -72,22 +79,22 @@ class Canvas:
             half = np.maximum(half, radii[:, None] * self.camera.focal / np.maximum(depth, 1e-6))
         points = np.concatenate([at, np.broadcast_to(half, depth.shape)[..., None]], axis=2)
         items[:, POINTS][:, :6] = points.reshape(-1, 6)
-        self._keep(items, depth, below)
+        self._keep(items, depth, by)
 
-    def patches(self, corners: FloatArray, colours: ArrayLike, *, opacity: float = 1.0, below: bool = False) -> None:
-        """Patches of four corners (k, 4, 3) [m], convex."""
+    def patches(self, corners: FloatArray, colours: ArrayLike, *, opacity: float = 1.0, by: Order | None) -> None:
+        """Patches of four corners (k, 4, 3) [m], convex; ``by`` as of strokes."""
         at, depth = self.camera(corners)
         items = np.zeros((len(corners), ITEM_SIZE))
         items[:, KIND], items[:, COLOUR], items[:, OPACITY] = PATCH, colours, opacity
         items[:, POINTS] = at.reshape(-1, 8)
-        self._keep(items, depth, below)
+        self._keep(items, depth, by)
 
-    def _keep(self, items: FloatArray, depth: FloatArray, below: bool) -> None:
+    def _keep(self, items: FloatArray, depth: FloatArray, by: Order | None) -> None:
         before = depth.min(axis=1, initial=np.inf) > 0.1  # of the camera
-        if below:
+        if by is None:
             self._below.append(items[before])
         else:
-            self._above.append((items[before], depth[before].mean(axis=1)))
+            self._above.append((items[before], by(depth[before], axis=1)))
 
     def painted(self, width: int, height: int) -> NDArray[np.uint8]:
         """(height, width, 3) the picture."""
@@ -104,11 +111,13 @@ def picture(sight: Sight, width: int = 480, height: int = 360, yaw: float = 0.8)
     canvas, unit = Canvas(Camera(sight, width, height, yaw)), height / 360
     if sight.ground is not None:
         ends, opacity = grid_lines(sight)
-        canvas.strokes(ends, _GRID, 0.45 * unit, opacity=opacity, below=True)
+        canvas.strokes(ends, _GRID, 0.45 * unit, opacity=opacity, by=None)
+        lying = np.min if len(sight.ground.boxes) else None
         if sight.support is not None:
-            canvas.patches(sight.support[None, [0, 1, 2, 2]], BLUE, opacity=0.15, below=True)
-        _draw_goal(canvas, sight, unit)
-        canvas.patches(*box_patches(sight, _BLOCK))
+            canvas.patches(sight.support[None, [0, 1, 2, 2]], BLUE, opacity=0.15, by=lying)
+        _draw_goal(canvas, sight, unit, lying)
+        # by its farthest corner, so that a patch hides nothing that stands on it
+        canvas.patches(*box_patches(sight, canvas.camera.place, _BLOCK), by=np.max)
     _draw_solids(canvas, sight, unit)
     half = np.where(sight.tensions > SLACK_BELOW, 1.1, 0.6)
     half[sight.driven] += 0.6 * (half[sight.driven] > 1)
@@ -124,22 +133,22 @@ def _cut(ends: FloatArray) -> FloatArray:
     return np.stack([points[:, :-1], points[:, 1:]], axis=2).reshape(-1, 2, 3)
 
 
-def _draw_goal(canvas: Canvas, sight: Sight, unit: float) -> None:
-    """Path, wanted direction and place, on the ground."""
+def _draw_goal(canvas: Canvas, sight: Sight, unit: float, by: Order | None) -> None:
+    """Path, wanted direction and place, on the ground or on the boxes there."""
     centre, length = sight.centre[:2], sight.length
     lines = [(sight.path, GREEN)] if len(sight.path) else []
     if sight.direction is not None:
         ahead = length * sight.direction
         aside = np.array([-ahead[1], ahead[0]])
-        tip = centre + 1.15 * ahead
-        lines.append((np.stack([centre + 0.6 * ahead, tip]), BLUE))
+        tip = centre + 0.93 * ahead  # farther, and it leaves the picture where it comes towards the camera
+        lines.append((np.stack([centre + 0.48 * ahead, tip]), BLUE))
         lines.append((np.stack([tip - 0.13 * ahead + 0.09 * aside, tip, tip - 0.13 * ahead - 0.09 * aside]), BLUE))
     if sight.place is not None:
         angles = np.linspace(0, 2 * np.pi, 33)
         lines.append((sight.place + 0.2 * length * np.column_stack([np.cos(angles), np.sin(angles)]), ORANGE))
     for points, colour in lines:
-        at = on_ground(sight, points)
-        canvas.strokes(np.stack([at[:-1], at[1:]], axis=1), colour, 2.0 * unit, below=True)
+        at = draped(sight.ground, points, 0.1 * length)
+        canvas.strokes(np.stack([at[:-1], at[1:]], axis=1), colour, 2.0 * unit, by=by)
 
 
 def _draw_solids(canvas: Canvas, sight: Sight, unit: float) -> None:
@@ -153,8 +162,8 @@ def _draw_solids(canvas: Canvas, sight: Sight, unit: float) -> None:
     radii, ball = np.array([solid.size[0] for solid in sight.solids]), lengths == 0
     canvas.strokes(spans[ball], 255 * colours[ball, :3], 2 * unit, opacity=colours[ball, 3], radii=radii[ball])
     if sight.ground is not None:
-        shadows = on_ground(sight, spans[~ball, :, :2].reshape(-1, 2)).reshape(-1, 2, 3)
-        canvas.strokes(shadows, _SHADOW, 2 * unit, opacity=0.3, below=True)
+        shadows = on_ground(sight.ground, spans[~ball, :, :2].reshape(-1, 2)).reshape(-1, 2, 3)
+        canvas.strokes(shadows, _SHADOW, 2 * unit, opacity=0.3, by=None)
     pieces = _cut(spans[~ball])
     tints = np.repeat(255 * colours[~ball, :3], PIECES, axis=0)
     canvas.strokes(pieces, tints, 1.7 * unit, radii=np.repeat(radii[~ball], PIECES))

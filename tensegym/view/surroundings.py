@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 from tensegym.arrays import FloatArray
 from tensegym.physics.terrain import Ground
 from tensegym.robot.sight import upward
+from tensegym.robot.surface import draped, on_top
 
 from .frame import Frame, Stage
 from .page import Page
@@ -45,7 +46,7 @@ class Surroundings:
             page.scene.add_box(f"/world/box {number}", _EARTH, tuple(2 * half for half in box.half), wxyz=(w, x, y, z),
                                position=box.centre)  # fmt: skip
         if len(stage.path) > 1:
-            points = np.column_stack([stage.path, np.full(len(stage.path), 0.005)])
+            points = draped(stage.ground, stage.path, 0.1 * length) + _raised(0.005)
             page.scene.add_line_segments("/world/path", np.stack([points[:-1], points[1:]], axis=1), _PATH,
                                          thickness=0.01 * length)  # fmt: skip
         self._arrow = page.scene.add_arrows(
@@ -53,17 +54,23 @@ class Surroundings:
             head_length=0.08 * length, visible=False,
         )  # fmt: skip
         self._place = page.scene.add_cylinder("/world/place", 0.06 * length, 0.01 * length, _GOAL, visible=False)
-        self._length = length
+        self._length, self._stage = length, stage
 
     def draw(self, frame: Frame, centre: FloatArray) -> None:
         """Show where a frame's robot, whose centre of mass (3,) is given [m], is to go."""
         there, along = bool(np.isfinite(frame.place).all()), bool(np.isfinite(frame.direction).all())
         self._place.visible, self._arrow.visible = there, along
         if there:
-            self._place.position = (*frame.place.tolist(), 0.005)
+            self._place.position = tuple(on_top(self._stage.ground, frame.place[None])[0] + _raised(0.005))
         if along:
-            tail = np.array([*(centre[:2] + 0.7 * self._length * frame.direction), 0.01])
-            self._arrow.points = np.stack([tail, tail + 0.35 * self._length * np.array([*frame.direction, 0.0])])[None]
+            self._arrow.points = self._ahead(centre[:2], frame.direction)[None]
+
+    def _ahead(self, centre: FloatArray, direction: FloatArray) -> FloatArray:
+        """(2, 3) a straight arrow from before the robot, as low as it lies on ground and boxes [m]."""
+        ends = centre + self._length * np.array([[0.7], [1.05]]) * direction
+        laid = draped(self._stage.ground, ends, 0.05 * self._length)
+        tilted = np.linspace(laid[0], laid[-1], len(laid))
+        return laid[[0, -1]] + _raised(0.01 + float((laid[:, 2] - tilted[:, 2]).max()))
 
     def follow(self, centre: FloatArray) -> None:
         """Bring a point (3,) of the world [m] to the page's middle: the world is moved, whatever the cameras do."""
@@ -80,6 +87,10 @@ class Surroundings:
     def remove(self) -> None:
         """Take all of it, and the robot, out of the page."""
         self._world.remove()
+
+
+def _raised(height: float) -> FloatArray:
+    return np.array([0.0, 0.0, height])
 
 
 def light(page: Page) -> None:

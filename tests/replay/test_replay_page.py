@@ -2,21 +2,24 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from tensegym.design.design import flexible_design
 from tensegym.physics.box import Box
 from tensegym.physics.terrain import FLAT
 from tensegym.replay import Recorder, write_replay
 from tensegym.robot.robot import TensegrityRobot
+from tensegym.robot.surface import on_top
 from tests.browser import Tab, chromium
 
 AHEAD = Box.between((0.6, -1.0, -0.1), (1.2, 1.0, 0.08))
+RAMP = Box((-1.5, 0.2, 0.0), (0.6, 0.4, 0.1), tuple(Rotation.from_euler("zy", [30, -15], degrees=True).as_quat()))
 
 
 @pytest.fixture(scope="module")
 def recording():
     recorder = Recorder("a < b & c </script>")
-    with TensegrityRobot(flexible_design(), dt=2e-3, ground=FLAT.holding([AHEAD])) as robot:
+    with TensegrityRobot(flexible_design(), dt=2e-3, ground=FLAT.holding([AHEAD, RAMP])) as robot:
         robot.command(0.4 * robot.command_limit)
         for _ in range(51):
             recorder.look(robot, face=0)
@@ -78,6 +81,14 @@ def test_the_robot_stands_where_it_stood(tab, recording):
     assert np.array(tab.page.evaluate("replay.robot.centre()")) == pytest.approx(
         recording.centres[20:22].mean(axis=0), abs=1e-6
     )
+
+
+def test_what_lies_on_the_ground_lies_on_boxes_too(tab, recording):
+    points = np.random.default_rng(5).uniform([-2.2, -0.5], [1.5, 0.8], (80, 2))
+    tops = np.array(tab.page.evaluate("ps => ps.map(([x, y]) => replay.view.onTop(x, y))", points.tolist()))
+    wanted = on_top(recording.ground, points)
+    assert len(np.unique(wanted[:, 2].round(3))) > 8  # ground, box and ramp are all met
+    assert tops - [0, 0, 0.002] == pytest.approx(wanted, abs=1e-6)
 
 
 def test_it_plays_to_its_end_in_slow_motion_too(tab):

@@ -77,8 +77,8 @@ class View {
     pen.lineJoin = "round";
     this.aim();
     this.drawGround();
-    this.drawGoal();
     const items = [];
+    this.addGoal(items);
     this.addBoxes(items);
     this.addRobot(items);
     items.sort((a, b) => b.depth - a.depth).forEach((item) => item.paint());
@@ -116,37 +116,54 @@ class View {
     }
   }
 
-  onGround(x, y) { return [x, y, this.level(x, y) + 0.002]; }
+  onTop(x, y) { // of the ground, or of the highest box there
+    const { boxes } = this.recording.arrays;
+    let z = this.level(x, y);
+    for (let k = 0; k < boxes.length; k += 10) z = Math.max(z, boxTop(boxes.subarray(k, k + 10), x, y));
+    return [x, y, z + 0.002];
+  }
 
-  drawGoal() {
+  addLine(items, from, to, colour, pixels) { // between points [x, y], laid over ground and boxes, in pieces to be sorted
+    const flat = !this.recording.arrays.boxes.length, rough = this.recording.arrays.heights.width > 0;
+    const length = Math.hypot(to[0] - from[0], to[1] - from[1]), piece = 0.1 * this.robot.scenery.length;
+    const count = flat && !rough ? 1 : Math.min(200, Math.max(1, Math.ceil(length / piece)));
+    const at = (k) => this.onTop(from[0] + (to[0] - from[0]) * k / count, from[1] + (to[1] - from[1]) * k / count);
+    for (let k = 0, a = at(0); k < count; k++) {
+      const p = a, q = at(k + 1), seen = this.project(p), other = this.project(q);
+      const depth = flat ? Infinity : seen && other && Math.min(seen[2], other[2]); // on a patch, not in it
+      if (depth) items.push({ depth, paint: () => this.line(p, q, colour, pixels) });
+      a = q;
+    }
+  }
+
+  addGoal(items) { // path, trail, support, direction, place, and what is below the centre of mass
     const { arrays } = this.recording, robot = this.robot, length = robot.scenery.length;
     for (let k = 0; k + 3 < arrays.path.length; k += 2)
-      this.line(this.onGround(arrays.path[k], arrays.path[k + 1]), this.onGround(arrays.path[k + 2], arrays.path[k + 3]),
-                "#009e73", 3);
+      this.addLine(items, arrays.path.subarray(k, k + 2), arrays.path.subarray(k + 2, k + 4), "#009e73", 3);
     if (this.trail)
-      for (let row = 4; row <= robot.row; row += 4) {
-        const a = this.trailPoints[row - 4], b = this.trailPoints[row];
-        this.line(this.onGround(a[0], a[1]), this.onGround(b[0], b[1]), "rgba(30, 30, 30, 0.55)", 1.5);
-      }
+      for (let row = 4; row <= robot.row; row += 4)
+        this.addLine(items, this.trailPoints[row - 4], this.trailPoints[row], "rgba(30, 30, 30, 0.55)", 1.5);
     const centre = robot.centre(), i = 2 * robot.row;
     const face = robot.scenery.faces[arrays.faces[robot.row]];
-    if (face && this.recording.ground !== null) this.polygon(face.map((n) => robot.node(n)), "rgba(0, 114, 178, 0.13)");
+    if (face && this.recording.ground !== null)
+      items.push({ depth: Infinity,
+                   paint: () => this.polygon(face.map((n) => robot.node(n)), "rgba(0, 114, 178, 0.13)") });
     const [u, v] = [arrays.directions[i], arrays.directions[i + 1]];
     if (Number.isFinite(u)) {
       const tip = 1.15 * length, at = (along, aside) =>
-        this.onGround(centre[0] + along * u - aside * v, centre[1] + along * v + aside * u);
-      this.line(at(0.55 * length, 0), at(tip, 0), "#0072b2", 5);
-      this.line(at(tip - 0.12 * length, 0.09 * length), at(tip, 0), "#0072b2", 5);
-      this.line(at(tip - 0.12 * length, -0.09 * length), at(tip, 0), "#0072b2", 5);
+        [centre[0] + along * u - aside * v, centre[1] + along * v + aside * u];
+      this.addLine(items, at(0.55 * length, 0), at(tip, 0), "#0072b2", 5);
+      this.addLine(items, at(tip - 0.12 * length, 0.09 * length), at(tip, 0), "#0072b2", 5);
+      this.addLine(items, at(tip - 0.12 * length, -0.09 * length), at(tip, 0), "#0072b2", 5);
     }
     const [x, y] = [arrays.places[i], arrays.places[i + 1]];
-    if (Number.isFinite(x)) this.ring(x, y, 0.2 * length, "#d55e00", 4);
-    this.ring(centre[0], centre[1], 0.015 * length, "#111", 3);
+    if (Number.isFinite(x)) this.addRing(items, x, y, 0.2 * length, "#d55e00", 4);
+    this.addRing(items, centre[0], centre[1], 0.015 * length, "#111", 3);
   }
 
-  ring(x, y, radius, colour, pixels) {
-    const at = (k) => this.onGround(x + radius * Math.cos(k * Math.PI / 12), y + radius * Math.sin(k * Math.PI / 12));
-    for (let k = 0; k < 24; k++) this.line(at(k), at(k + 1), colour, pixels);
+  addRing(items, x, y, radius, colour, pixels) {
+    const at = (k) => [x + radius * Math.cos(k * Math.PI / 12), y + radius * Math.sin(k * Math.PI / 12)];
+    for (let k = 0; k < 24; k++) this.addLine(items, at(k), at(k + 1), colour, pixels);
   }
 
   polygon(points, colour) {
@@ -166,10 +183,11 @@ class View {
     const { boxes } = this.recording.arrays;
     for (let k = 0; k < boxes.length; k += 10)
       this.addBox(items, [...boxes.subarray(k, k + 3), ...boxes.subarray(k + 6, k + 10)],
-                  Array.from(boxes.subarray(k + 3, k + 6), (half) => 2 * half), [0.69, 0.72, 0.75, 1]);
+                  Array.from(boxes.subarray(k + 3, k + 6), (half) => 2 * half), [0.69, 0.72, 0.75, 1], true);
   }
 
-  addBox(items, pose, sides, rgba) { // its faces, each shaded by how far up it looks
+  addBox(items, pose, sides, rgba, stands = false) { // its faces towards the camera, each shaded by how far up it looks
+    const camera = this.target.map((x, k) => x + this.distance * this.back[k]);
     for (let axis = 0; axis < 3; axis++)
       for (const sign of [-1, 1]) {
         const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
@@ -179,13 +197,18 @@ class View {
           return turned(pose, p);
         };
         const out = [0, 1, 2].map((k) => sign * (turned(pose, UNIT[axis])[k] - pose[k]));
-        const colour = shade(rgba, 0.82 + 0.18 * dot(out, this.up));
+        if (dot(out, at(0.5, 0.5).map((x, k) => camera[k] - x)) <= 0) continue;
+        const light = 0.82 + 0.18 * dot(out, this.up);
         const n = Math.min(24, Math.ceil(sides[u] / side)), m = Math.min(24, Math.ceil(sides[v] / side));
+        const colours = [1, Math.min(n, m) > 2 ? 0.95 : 1].map((tint) => shade(rgba, tint * light)); // shows a slope
         for (let i = 0; i < n; i++)
           for (let j = 0; j < m; j++) { // short patches, so that they are painted in the right order
-            const seen = this.project(at((i + 0.5) / n, (j + 0.5) / m));
-            const corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(([a, b]) => at(a / n, b / m));
-            if (seen) items.push({ depth: seen[2], paint: () => this.polygon(corners, colour) });
+            let corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(([a, b]) => at(a / n, b / m));
+            if (stands && corners.every((p) => p[2] < 1e-9)) continue; // in the ground
+            if (stands) corners = corners.map((p) => raised(p, out));
+            const seen = corners.map((p) => this.project(p)); // by the farthest, so that it hides nothing on top of it
+            if (!seen.includes(null))
+              items.push({ depth: Math.max(...seen.map((p) => p[2])), paint: () => this.polygon(corners, colours[(i + j) % 2]) });
           }
       }
   }
@@ -234,7 +257,7 @@ class View {
       this.pen.lineCap = "round";
     });
     if (this.recording.ground !== null) {
-      const down = (p) => this.onGround(p[0], p[1]);
+      const down = (p) => [p[0], p[1], this.level(p[0], p[1])];
       items.push({ depth: Infinity, paint: () => this.line(down(from), down(to), "rgba(20, 30, 40, 0.10)", 5) });
     }
   }
@@ -287,6 +310,26 @@ const normal = (a) => { const n = Math.hypot(...a) || 1; return a.map((x) => x /
 function turned(pose, p) { // a point of a frame in the world
   const v = [pose[3], pose[4], pose[5]], c = cross(v, p).map((x) => 2 * x), d = cross(v, c);
   return [0, 1, 2].map((k) => pose[k] + p[k] + pose[6] * c[k] + d[k]);
+}
+
+function raised(p, normal) { // a point of a face, moved up along it to z = 0 where it is below
+  const steep = 1 - normal[2] * normal[2], up = p[2] < 0 && steep > 1e-9 ? -p[2] / steep : 0;
+  return [0, 1, 2].map((k) => p[k] + up * ((k === 2) - normal[2] * normal[k]));
+}
+
+function boxTop(box, x, y) { // where a vertical line leaves a box (centre, half sides, quaternion); -Infinity beside it
+  const u = x - box[0], v = y - box[1];
+  if (u * u + v * v > box[3] * box[3] + box[4] * box[4] + box[5] * box[5]) return -Infinity; // soon done with most
+  const back = [0, 0, 0, -box[6], -box[7], -box[8], box[9]], up = turned(back, [0, 0, 1]);
+  const foot = turned(back, [u, v, -box[2]]);
+  let enters = -Infinity, leaves = Infinity;
+  for (let k = 0; k < 3; k++) {
+    const slope = Math.abs(up[k]) < 1e-12 ? 1e-12 : up[k];
+    const ends = [(-box[3 + k] - foot[k]) / slope, (box[3 + k] - foot[k]) / slope];
+    enters = Math.max(enters, Math.min(...ends));
+    leaves = Math.min(leaves, Math.max(...ends));
+  }
+  return enters <= leaves ? leaves : -Infinity;
 }
 
 function shade(rgba, light) {
