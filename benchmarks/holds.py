@@ -22,6 +22,7 @@ import tyro
 
 from tensegym.arrays import FloatArray
 from tensegym.control.hold import Hold, attempt, save_holds, turned
+from tensegym.control.made_for import MadeFor
 from tensegym.control.poise import Shapes, beyond, shapes
 from tensegym.design.design import RobotDesign
 from tensegym.design.design_file import as_design
@@ -66,7 +67,7 @@ class Holds:
             robots = [stack.enter_context(TensegrityRobot(design, dt=dt, engine=engine)) for dt, engine in ROBOTS]
             holds = [hold for face in first for hold in self._from(robots, at, faces, face)]
         every = turned(holds, design, faces)
-        save_holds(every, self.out)
+        save_holds(every, self.out, MadeFor.of(design.standing, faces))
         return summary(every, faces)
 
     def _from(self, robots: Sequence[TensegrityRobot], at: Shapes, faces: Faces, face: int) -> list[Hold]:

@@ -9,6 +9,7 @@ from typing import Annotated
 from tensegym.errors import InputError
 from tensegym.report import Report, table
 from tensegym.search.confirm import confirm
+from tensegym.search.problem import Problem
 from tensegym.search.report import write_report
 from tensegym.search.winner import ranked
 from tensegym.search.workers import open_workers
@@ -44,6 +45,7 @@ class DesignReport:
         others = {}
         for folder in self.against:
             other, kept = open_search(folder)
+            _check_comparable(folder, problem, other)
             others[f"{other.settings.sampler}, {folder.name}"] = (other, kept.finished())
         finished = store.finished()
         if not ranked(problem, finished):
@@ -57,3 +59,11 @@ class DesignReport:
         gains = "".join(f"\n{each['text']}" for each in data["gains"])
         text = table(header, rows) + f"{gains}\ngoal {data['goal']}: {'met' if data['goal_met'] else 'not met'}"
         return Report(f"{text}\n{self.folder / 'report.md'}", data)
+
+
+def _check_comparable(folder: Path, problem: Problem, other: Problem) -> None:
+    """Raise InputError for a search whose trials do something else, or are better by something else."""
+    own, others = ((p.task.motion, str(p.settings.objectives[0])) for p in (problem, other))
+    if own != others:
+        raise InputError(f"--against {folder} is a search of the task {others[0]} for {others[1]}, this one of "
+                         f"{own[0]} for {own[1]}; compare searches of one task and objective")  # fmt: skip

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from tensegym.control.made_for import MadeFor
 from tensegym.control.tipping import Pull, Tip, subsets, tip_from, tip_table
 from tensegym.control.walker import save_table
 from tensegym.design.design_file import as_design
@@ -113,7 +114,7 @@ class Step:
 
             tips = tip_table(robot, (self.depth, robot.design.deepest_pull), progress=progress)
         self.out.mkdir(parents=True, exist_ok=True)
-        save_table(tips, self.out / "tips.json")
+        save_table(tips, self.out / "tips.json", MadeFor.like(robot))
         names = robot.faces.names()
         rows = []
         for face, name in enumerate(names):

@@ -124,7 +124,7 @@ class CpgController:
     def begin(self, robot: TensegrityRobot, seed: int = 0) -> None:
         """As `Controller` has it. Raises DesignError where the robot has another number of kinds of drives."""
         p, kinds = self.parameters, drive_kinds(robot.design)
-        count = int(kinds.max()) + 1
+        count = len(np.unique(kinds))
         if count != len(p.amplitudes):
             raise DesignError(
                 f"the controller has weights for {len(p.amplitudes)} kinds of drives, the robot has {count}"

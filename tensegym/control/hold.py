@@ -17,6 +17,7 @@ from tensegym.robot.robot import TensegrityRobot
 from tensegym.structure.faces import Faces
 from tensegym.tables import Checked, bounded, noted, read_records
 
+from .made_for import KEY, MadeFor
 from .tipping import current_face
 
 PERIOD = 0.1  # s between two looks at the robot
@@ -88,9 +89,9 @@ def turned(holds: Sequence[Hold], design: RobotDesign, faces: Faces) -> list[Hol
     return sorted(found.values(), key=lambda hold: hold.from_face)
 
 
-def save_holds(holds: Sequence[Hold], path: Path) -> None:
-    """Write a table of holds as JSON."""
-    write_json(path, {"holds": [asdict(hold) for hold in holds]})
+def save_holds(holds: Sequence[Hold], path: Path, made_for: MadeFor) -> None:
+    """Write a table of holds, and of which robot they are, as JSON."""
+    write_json(path, {KEY: asdict(made_for), "holds": [asdict(hold) for hold in holds]})
 
 
 def load_holds(path: Path) -> list[Hold]:

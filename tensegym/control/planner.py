@@ -21,6 +21,7 @@ from tensegym.robot.robot import TensegrityRobot
 from tensegym.tables import bounded
 
 from .bearing import Bearing
+from .made_for import MadeFor
 from .tipping import Pull, Tip, current_face, face_direction
 from .walker import Walker, WalkerSettings
 
@@ -50,16 +51,18 @@ class Planner(Walker):
     """A walker that looks ahead.
 
     Args:
-        table: of tips with their turns, of a design of the same topology; None makes the robot's own.
+        table: of tips with their turns, of a design with the same members; None makes the robot's own.
         settings: how its pulls are played.
         period: a command is held for this long [s].
+        made_for: the robot of the table, where that is known.
     """
 
     def __init__(
-        self, table: Sequence[Tip] | None, settings: PlannerSettings | None = None, period: float = 0.1
-    ) -> None:
+        self, table: Sequence[Tip] | None, settings: PlannerSettings | None = None, period: float = 0.1,
+        made_for: MadeFor | None = None,
+    ) -> None:  # fmt: skip
         settings = settings or PlannerSettings()
-        super().__init__(table, settings, period)
+        super().__init__(table, settings, period, made_for)
         self._reach = settings.reach
 
     def begin(self, robot: TensegrityRobot, seed: int = 0) -> None:

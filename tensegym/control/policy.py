@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -13,12 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tensegym.arrays import FloatArray
+from tensegym.design.design_file import as_design
 from tensegym.design.variation import parse_variation
 from tensegym.errors import DesignError, InputError
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.tables import mapping, one_line, read_yaml, show
 
 from .bearing import Bearing
+from .made_for import MadeFor
 from .observations import make_observation
 from .policy_file import SETTINGS, WEIGHTS, SavedPolicy, read_policy
 
@@ -46,6 +48,14 @@ class Policy:
         self._index, self._sign, self._back = (
             torch.from_numpy(saved.weights[f"mlp_extractor.{part}"]) for part in ("index", "sign", "back")
         )
+
+    @cached_property
+    def made_for(self) -> MadeFor | None:
+        """The robot of its training; None where that was of a file that is gone."""
+        try:
+            return MadeFor.of(as_design(self.env.get("design", "six_rod")).standing)
+        except FileNotFoundError:
+            return None
 
     def __call__(self, observation: NDArray[np.float32]) -> NDArray[np.float32]:
         """Action (driven,) of an observation (observed,): the mean over the symmetries, turned back."""
@@ -144,7 +154,9 @@ class PolicyController:
         self._kind = observation or env.get("observation", "full")
 
     def begin(self, robot: TensegrityRobot, seed: int = 0) -> None:
-        """As `Controller` has it. Raises DesignError where the robot's observation or drives are not the policy's."""
+        """As `Controller` has it. Raises DesignError where rods, drives or observation are not the policy's."""
+        if self.policy.made_for:
+            self.policy.made_for.check(robot, f"policy {self.policy.name}", "take one of a robot like it, or train one")
         vary = self.policy.env.get("vary")
         seen = parse_variation(vary, robot.design) if vary else None
         self._observation = make_observation(self._kind, robot, seen)

@@ -15,6 +15,7 @@ from tensegym.tables import Checked, noted
 
 from .bearing import Bearing
 from .hold import PERIOD, REST, Attempt, Hold
+from .made_for import MadeFor, check_table
 from .tipping import current_face
 
 _SWEEPS = 60  # of the iteration over values
@@ -37,22 +38,23 @@ class Stepper:
     robot, or tipped it elsewhere.
 
     Args:
-        table: of holds, of a design of the same topology.
+        table: of holds, of a design with the same members.
         settings: how it steps.
+        made_for: the robot of the table, where that is known.
     """
 
     period = PERIOD
 
-    def __init__(self, table: Sequence[Hold], settings: StepperSettings | None = None) -> None:
-        self._table, self._settings = table, settings or StepperSettings()
+    def __init__(
+        self, table: Sequence[Hold], settings: StepperSettings | None = None, made_for: MadeFor | None = None
+    ) -> None:
+        self._table, self._settings, self._made_for = table, settings or StepperSettings(), made_for
 
     def begin(self, robot: TensegrityRobot, seed: int = 0) -> None:
-        """As `Controller` has it. Raises DesignError where the table is of another number of faces or drives."""
-        tabled = 1 + max(hold.from_face for hold in self._table), len(self._table[0].parts)
-        here = len(robot.faces.triangles), len(robot.drives)
-        if tabled[0] > here[0] or tabled[1] != here[1]:
-            raise DesignError(f"the table of holds is of a robot with {tabled[0]} faces and {tabled[1]} drives, this "
-                              f"one has {here[0]} and {here[1]}; make its own: python benchmarks/holds.py")  # fmt: skip
+        """As `Controller` has it. Raises DesignError where the table is of a robot with other faces, rods or drives."""
+        faces = {hold.from_face for hold in self._table} | {face for hold in self._table for face, _ in hold.ends}
+        check_table(self._made_for, faces, len(self._table[0].parts), robot, "the table of holds",
+                    "make its own by `python benchmarks/holds.py --design FILE`")  # fmt: skip
         self._wanted: int | None = None
         self._attempt: Attempt | None = None
         self._hold: Hold | None = None

@@ -6,7 +6,7 @@
     gain = 1.0                # and the fields of tensegym.control.cpg.Cpg
 
     kind = "walker"           # the open-loop walker
-    tips = ""                 # a file of `tensegym step --all-faces`, or three_rod_robot; default: the six-rod's;
+    tips = ""                 # six_rod, the default, or three_rod_robot; a file of `tensegym step --all-faces`; or
                               # "own": made now
     depth = 1.0               # and the fields of tensegym.control.walker.WalkerSettings
 
@@ -28,8 +28,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 from tensegym.errors import DesignError
@@ -38,14 +36,13 @@ from tensegym.tables import as_text, bounded, fill, noted, show
 
 from .controller import Controller
 from .cpg import Cpg, CpgController
-from .hold import Hold, load_holds
 from .planner import Planner, PlannerSettings
-from .policy import PolicyController, policy_env, policy_folder, shipped
+from .policy import PolicyController, policy_env, policy_folder
 from .policy_file import read_policy
 from .random_commands import RandomCommands
 from .stepper import Stepper, StepperSettings
-from .tipping import Tip
-from .walker import Walker, WalkerSettings, load_table
+from .tabled import holds_of, tips_of
+from .walker import Walker, WalkerSettings
 
 OWN = "own"
 
@@ -61,14 +58,12 @@ def make_controller(table: Mapping[str, Any]) -> Controller:
     if kind == "cpg":
         policy = table.get("policy")
         return CpgController(parameters, PolicyController(policy) if policy else None)
-    if kind == "walker":
-        tips = table.get("tips", "")
-        return Walker(None if tips == OWN else _tips(tips), parameters, table.get("period", 0.1))
-    if kind == "planner":
-        return Planner(None if (tips := table.get("tips", "")) == OWN else _tips(tips), parameters,
-                       table.get("period", 0.1))  # fmt: skip
+    if kind in ("walker", "planner"):
+        tips, made_for = (None, None) if (name := table.get("tips", "")) == OWN else tips_of(name)
+        return (Walker if kind == "walker" else Planner)(tips, parameters, table.get("period", 0.1), made_for)
     if kind == "stepper":
-        return Stepper(_holds(table.get("holds", "")), parameters)
+        holds, made_for = holds_of(table.get("holds", ""))
+        return Stepper(holds, parameters, made_for)
     if kind == "policy":
         return PolicyController(parameters.policy, parameters.observation, parameters.period)
     return RandomCommands(parameters.period)
@@ -123,15 +118,3 @@ def _parsed(table: Mapping[str, Any]) -> tuple[str, Any]:
         fill(_RandomSettings, {"period": table["period"]}, "controller", DesignError)
     own = {name: value for name, value in table.items() if name != "kind" and name not in besides}
     return kind, fill(parameters, own, "controller", DesignError)
-
-
-@cache
-def _tips(path: str) -> list[Tip]:
-    """A table of tips, read once a process; by the name of one that ships, the default design's where that is empty."""
-    return load_table(Path(path) if Path(path).suffix else shipped("walker") / f"{path or 'tips'}.json")
-
-
-@cache
-def _holds(path: str) -> list[Hold]:
-    """A table of holds, read once a process; the default design's where the path is empty."""
-    return load_holds(Path(path) if path else shipped("walker") / "holds.json")

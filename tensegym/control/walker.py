@@ -1,6 +1,6 @@
 """The open-loop walker: from a table of which pull tips which face where, the pull that leads nearest the heading.
 
-A table takes minutes to make for a design; that of another design of the same topology will do.
+A table takes minutes to make for a design; that of another design with the same members will do.
 """
 
 from __future__ import annotations
@@ -19,7 +19,10 @@ from tensegym.robot.robot import TensegrityRobot
 from tensegym.tables import Checked, bounded, read_records
 
 from .bearing import Bearing
+from .made_for import KEY, MadeFor, check_table
 from .tipping import Pull, Tip, current_face, face_direction, tip_table
+
+_REMEDY = "make its own by `tensegym step --all-faces --design FILE --out DIR`, or say tips = 'own'"
 
 
 @dataclass(frozen=True)
@@ -35,31 +38,30 @@ class Walker:
     """Looks at the face it stands on only when a pull is over; in between it plays commands blindly.
 
     Args:
-        table: of tips, of a design of the same topology; None makes the robot's own, which takes minutes.
+        table: of tips, of a design with the same members; None makes the robot's own, which takes minutes.
         settings: how its pulls are played.
         period: a command is held for this long [s].
+        made_for: the robot of the table, where that is known.
     """
 
     def __init__(
-        self, table: Sequence[Tip] | None, settings: WalkerSettings | None = None, period: float = 0.1
-    ) -> None:
+        self, table: Sequence[Tip] | None, settings: WalkerSettings | None = None, period: float = 0.1,
+        made_for: MadeFor | None = None,
+    ) -> None:  # fmt: skip
         self._settings, self.period = settings or WalkerSettings(), period
-        self._table = table
+        self._own, self._table, self._made_for = table is None, table, made_for
         self._by_face: dict[int, list[Tip]] = {}
 
     def begin(self, robot: TensegrityRobot, seed: int = 0) -> None:
-        """As `Controller` has it. Raises DesignError where the table is of another number of faces or drives."""
-        if self._table is None:
+        """As `Controller` has it. Raises DesignError where the table is of a robot with other faces, rods or drives."""
+        if self._own and (self._made_for is None or self._made_for.differs(MadeFor.like(robot))):
             with TensegrityRobot(robot.design, dt=robot.dt, engine=robot.engine) as other:
-                self._table = tip_table(other)
+                self._table, self._made_for = tip_table(other), MadeFor.like(other)
+            self._by_face = {}
+        table = self._table or ()
         if not self._by_face:
-            self._read(self._table)
-        here = len(robot.faces.triangles), len(robot.drives)
-        if self._tabled[0] > here[0] or self._tabled[1] != here[1]:
-            raise DesignError(
-                f"the walker's table is of a robot with {self._tabled[0]} faces and {self._tabled[1]} drives, this one "
-                f"has {here[0]} and {here[1]}; take the pattern generator (kind = 'cpg')"
-            )
+            self._read(table)
+        check_table(self._made_for, (tip.from_face for tip in table), self._drives, robot, "the table of tips", _REMEDY)
         self._deepest = robot.design.deepest_pull
         self._scale = self._settings.depth * self._deepest / self._depth
         self._pull: Pull | None = None
@@ -67,7 +69,7 @@ class Walker:
 
     def _read(self, table: Sequence[Tip]) -> None:
         """What every episode asks of the table."""
-        self._tabled = 1 + max(tip.from_face for tip in table), 1 + max(max(tip.pull.drives) for tip in table)
+        self._drives = 1 + max(max(tip.pull.drives) for tip in table)
         self._depth = max(tip.pull.depth for tip in table)
         self._fallback = max(table, key=lambda tip: len(tip.pull.drives)).pull
         for tip in table:
@@ -96,9 +98,9 @@ class Walker:
         return max(tips, key=lambda tip: float(wanted @ tip.travel)).pull
 
 
-def save_table(table: Sequence[Tip], path: Path) -> None:
-    """Write a table of tips as JSON."""
-    write_json(path, {"tips": [asdict(tip) for tip in table]})
+def save_table(table: Sequence[Tip], path: Path, made_for: MadeFor) -> None:
+    """Write a table of tips, and of which robot they are, as JSON."""
+    write_json(path, {KEY: asdict(made_for), "tips": [asdict(tip) for tip in table]})
 
 
 def load_table(path: Path) -> list[Tip]:

@@ -15,6 +15,7 @@ import tensegym
 from tensegym.cli.main import COMMANDS
 from tensegym.control.bearing import Bearing
 from tensegym.control.commands_file import read_commands
+from tensegym.control.made_for import MadeFor, read_made_for
 from tensegym.control.tipping import Pull, run_pull, subsets, tip_from, tip_table
 from tensegym.control.walker import Walker, load_table, save_table
 from tensegym.design.design import RobotDesign
@@ -23,6 +24,7 @@ from tensegym.errors import InputError
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.robot.start_poses import start_at
 from tensegym.structure.faces import face_by_nodes
+from tensegym.structure.structure import six_rod
 from tests.conftest import assert_refused
 
 HEADER = "time_s," + ",".join(f"drive_{d}_rad" for d in range(1, 7))
@@ -194,8 +196,10 @@ def test_the_table_has_every_choice_of_one_to_three_drives(tips):
 
 
 def test_a_table_goes_to_json_and_back(tips, tmp_path):
-    save_table(tips, tmp_path / "tips.json")
+    made_for = MadeFor.of(six_rod())
+    save_table(tips, tmp_path / "tips.json", made_for)
     assert load_table(tmp_path / "tips.json") == tips
+    assert read_made_for(tmp_path / "tips.json") == made_for
     (tmp_path / "bad.json").write_text('[{"pull": 1}]')
     with pytest.raises(InputError, match=r"tips row 1\.pull = 1 must be a table"):
         load_table(tmp_path / "bad.json")
@@ -247,6 +251,7 @@ def test_all_faces_writes_the_walkers_table(tips, cli, tmp_path, monkeypatch):
     assert data == {"out": str(tmp_path / "tips.json"), "pulls": 41, "tipped": moved,
                     "peak_tension_N": max(tip.peak_tension for tip in tips)}  # fmt: skip
     assert load_table(tmp_path / "tips.json") == tips
+    assert len(read_made_for(tmp_path / "tips.json").faces) == 20
     _, text, _ = cli("step", "--all-faces", "--out", tmp_path)
     assert f"{moved} of 41 pulls tip the robot" in text
     assert len([line for line in text.splitlines() if "  closed " in line or "  open " in line]) == 20

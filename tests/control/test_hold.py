@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from tensegym.control.hold import Attempt, Hold, attempt, load_holds, save_holds, turned
+from tensegym.control.made_for import MadeFor
 from tensegym.control.policy import shipped
 from tensegym.control.tipping import current_face
 from tensegym.errors import InputError
 from tensegym.robot.robot import TensegrityRobot
+from tensegym.structure.structure import six_rod
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +56,7 @@ def test_a_hold_is_over_when_the_robot_has_landed_or_is_not_going_to_tip(robot):
 
 def test_a_table_comes_back_from_its_file(tmp_path):
     holds = [Hold(3, (0.5, 0.0, 1.0), ((4, 0.75), (3, 0.25)))]
-    save_holds(holds, tmp_path / "holds.json")
+    save_holds(holds, tmp_path / "holds.json", MadeFor.of(six_rod()))
     assert load_holds(tmp_path / "holds.json") == holds
     assert (holds[0].leads_to(4), holds[0].leads_to(9)) == (0.75, 0.0)
 

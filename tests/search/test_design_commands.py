@@ -77,10 +77,23 @@ def test_a_controller_that_does_not_fit_is_refused_before_anything_is_written(cl
     prism = '[design.structure]\nbuilder = "prism"\n[controller]\nkind = "walker"\ntips = "three_rod_robot"'
     text = tiny_file.read_text().replace("[controller]\namplitudes = [0.5, 0.5]", prism)
     tiny_file.write_text(text.replace('"controller.lags" = {low = -1.0', '"controller.depth" = {low = 0.5'))
-    assert_refused(cli(*command, out), "the start of", "6 drives, this one has 8 and 0")
+    assert_refused(cli(*command, out), "the start of", "6 drives, this one has 0")
     tiny_file.write_text(tiny_file.read_text().replace("three_rod_robot", "nobodys"))
     assert_refused(cli(*command, out), "no table of tips")
     assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [('motion = "roll"', 'motion = "cross"'), ("[search]", '[search]\nobjectives = ["max tips"]')]
+)
+def test_searches_of_other_tasks_or_objectives_are_not_compared(cli, tiny_file, tmp_path, old, new):
+    text = tiny_file.read_text()
+    for name, task in (("this", text), ("other", text.replace(old, new))):
+        tiny_file.write_text(task)
+        design(cli, "run", "--task", tiny_file, "--budget", 1, "--out", tmp_path / name)
+    argv = ("design", "report", "--folder", tmp_path / "this", "--episodes", 2, "--against", tmp_path / "other")
+    assert_refused(cli(*argv), "other is a search of the task", "max speed_lps; compare")
+    assert not (tmp_path / "this" / "report.md").exists()
 
 
 @pytest.mark.parametrize("url", ["postgresql://nobody@127.0.0.1:1/none", "nonsense", "sqlite:////no/such/folder/a.db"])

@@ -145,12 +145,9 @@ def test_evaluate_writes_metrics_picture_video_and_table(tiny_run, tmp_path, cli
 
 def test_one_episode_with_baselines_as_json(tiny_run, tmp_path, cli, monkeypatch):
     from tensegym.control.tipping import Pull, Tip
-    from tensegym.control.walker import load_table, save_table
 
-    save_table([Tip(Pull((0, 5), 0.3), face, (face + 1) % 20, (0.1, 0.0), 10.0) for face in range(20)],
-               tmp_path / "tips.json")  # fmt: skip
-    table = load_table(tmp_path / "tips.json")
-    monkeypatch.setattr("tensegym.control.table._tips", lambda path: table)
+    table = [Tip(Pull((0, 5), 0.3), face, (face + 1) % 20, (0.1, 0.0), 10.0) for face in range(20)]
+    monkeypatch.setattr("tensegym.control.table.tips_of", lambda name: (table, None))
     status, text, _ = cli("evaluate", "--policy", tiny_run, "--out", tmp_path / "e", "--episodes", 1, "--seconds", 1,
                           "--jobs", 1, "--no-half-step", "--no-video", "--json")  # fmt: skip
     assert status == 0
