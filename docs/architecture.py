@@ -10,7 +10,7 @@ from typing import Any
 
 from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
-from tensegym.plotting import new_figure, save
+from tensegym.plotting import COLOURS, new_figure, save
 from tests.test_layers import OWN, SHELVES, shelf
 
 HERE = Path(__file__).parent
@@ -29,21 +29,21 @@ PLACES = {  # of each shelf: column, row from below, what stands there
     "robot": (1.2, 5.5, "a design in an engine"),
     "control": (0.4, 6.4, "what moves a robot"),
     "tasks": (1.2, 7.2, "what it is to do"),
-    "envs": (0.4, 8.0, "Gymnasium"),
+    "envs": (0.4, 7.95, "Gymnasium"),
     "train": (0.1, 9.6, "PPO"),
-    "search": (1.3, 9.6, "over designs"),
+    "search": (1.2, 9.35, "over designs"),
     "compare": (2.9, 8.0, "engines side by side"),
     "validation": (3.0, 6.4, "closed forms"),
-    "replay": (1.6, 8.8, "recordings and their page"),
-    "view": (2.5, 9.9, "in the browser"),
-    "cli": (3.0, 10.6, "commands"),
+    "replay": (1.6, 8.65, "recordings and their page"),
+    "view": (2.35, 9.95, "in the browser"),
+    "cli": (3.0, 10.7, "commands"),
 }
 TOOLS = ("errors", "arrays", "files", "compiled", "tables", "report", "plotting", "progress", "processes")
 WALKS = {  # the shelves that a walk enters, in order, as docs/architecture.md tells them
-    "one action": ("#1f77b4", ("envs", "tasks", "robot", "engine", "physics", "bullet")),
-    "one hinge": ("#2ca02c", ("cli", "flexure", "flexible")),
-    "one design": ("#ff7f0e", ("design", "structure", "physics", "robot")),
-    "one trial": ("#d62728", ("search", "tasks", "control", "robot")),
+    "one action": (COLOURS[0], ("envs", "tasks", "robot", "engine", "physics", "bullet")),
+    "one hinge": (COLOURS[2], ("cli", "flexure", "flexible")),
+    "one design": (COLOURS[3], ("design", "structure", "physics", "robot")),
+    "one trial": (COLOURS[1], ("search", "tasks", "control", "robot")),
 }
 ACTION = (
     ("action (6), -1 to 1", "envs/rolling.py"),

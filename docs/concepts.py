@@ -10,7 +10,7 @@ import numpy as np
 from tensegym import RobotDesign, TensegrityRobot
 from tensegym.control.tipping import Pull, tip_from
 from tensegym.physics.robot_arrays import explicit_step_limit, robot_model
-from tensegym.plotting import COLOURS, new_figure, save
+from tensegym.plotting import COLOURS, new_figure, save, thin_legend
 from tensegym.structure.equilibrium import out_of_balance
 from tensegym.structure.structure import six_rod
 
@@ -24,11 +24,10 @@ def draw_spacing() -> None:
     figure, axis = new_figure(size=(6, 3))
     axis.plot(apart, left, color=COLOURS[0])
     axis.plot(0.5, 0, "o", color=COLOURS[1])
-    axis.annotate("balance", (0.5, 0), (0.53, 1.2), arrowprops={"arrowstyle": "->"})
+    axis.annotate("balance", (0.5, 0.1), (0.485, 2.2), ha="center", arrowprops={"arrowstyle": "->"})
     axis.set_xlabel("distance of parallel rods [rod lengths]")
     axis.set_ylabel("force left on a node [N]")
     axis.set_ylim(bottom=-0.3)
-    axis.grid(alpha=0.3)
     save(figure, FOLDER / "spacing.png")
 
 
@@ -55,9 +54,10 @@ def draw_tip() -> None:
     axis.plot(*way.T, color=COLOURS[1], label="centre of mass: a pull of 2 s, let out in 1.6 s")
     axis.plot(*way[0], "o", color=COLOURS[1])
     axis.set_aspect("equal")
+    axis.set_ylim(top=0.47)  # room for the legend above the rods
     axis.set_xlabel("x [m]")
     axis.set_ylabel("y [m]")
-    axis.legend(loc="best", fontsize=8)
+    thin_legend(axis, loc="upper left")
     save(figure, FOLDER / "tip.png")
 
 
@@ -73,8 +73,10 @@ def draw_step() -> None:
     axis.plot(here, 1e3 * explicit_step_limit(robot_model(design)), "o", color=COLOURS[0], label="default robot")
     axis.set_xlabel("stiffness of the wound cables [N/m]")
     axis.set_ylabel("time step [ms]")
-    axis.legend(fontsize=8)
-    axis.grid(alpha=0.3, which="both")
+    axis.set_yticks([0.75, 1, 1.5, 2], ["0.75", "1", "1.5", "2"])
+    axis.minorticks_off()
+    axis.set_ylim(0.7, 2.2)
+    thin_legend(axis)
     save(figure, FOLDER / "step.png")
     print(f"default robot: {1e3 * explicit_step_limit(robot_model(design)):.3g} ms")
 

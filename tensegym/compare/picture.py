@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tensegym.plotting import new_figure, save
+from tensegym.plotting import COLOURS, new_figure, save, thin_legend
 
 from .part import ENGINES, Part
 
@@ -18,7 +18,6 @@ def draw(parts: Sequence[Part], out: Path) -> None:
     figure, axes = new_figure(1, len(parts), size=(5.5 * len(parts), 4.5), squeeze=False)
     for axis, part in zip(axes[0], parts, strict=True):
         _PANELS[part.title](axis, part)
-        axis.grid(alpha=0.3)
     save(figure, out)
 
 
@@ -30,31 +29,33 @@ def _paths(axis: Any, part: Part) -> None:
         values = np.array(path)
         values = values if values.ndim == 1 else values.max(axis=1)
         label = {"engines_m": "farthest node"}.get(name, name.removesuffix("_m"))
-        axis.semilogy(period * np.arange(len(values)), np.maximum(values, 1e-18), label=label)
+        number = len(axis.lines)
+        axis.semilogy(period * np.arange(len(values)), np.maximum(values, 1e-18), color=COLOURS[number % len(COLOURS)],
+                      ls=("-", "--", ":")[number % 3], label=label)  # fmt: skip
     axis.set(xlabel="time [s]", ylabel="nodes apart [m]", title=f"{part.title}: PyBullet and MuJoCo")
-    axis.legend(fontsize=8)
+    thin_legend(axis)
 
 
 def _heights(axis: Any, part: Part) -> None:
-    axis.barh(part.curves["faces"], 1e3 * np.array(part.curves["difference_m"]))
-    axis.set(xlabel="height in MuJoCo less that in PyBullet [mm]", title="at rest, face by face")
+    axis.barh(part.curves["faces"], 1e3 * np.array(part.curves["difference_m"]), color=COLOURS[0])
+    axis.set(xlabel="height in MuJoCo less that in PyBullet [mm]", ylabel="face, by its nodes", title="at rest")
     axis.tick_params(axis="y", labelsize=7)
 
 
 def _tips(axis: Any, part: Part) -> None:
     shares = {name: 100 * part.curves[name] for name in ("equal", "on an edge", "not explained")}
-    bars = axis.bar(list(shares), list(shares.values()))
+    bars = axis.bar(list(shares), list(shares.values()), color=COLOURS[0])
     axis.bar_label(bars, fmt="%.1f %%")
     axis.set(ylabel="of all pulls [%]", title="faces that tabulated pulls end on")
 
 
 def _speeds(axis: Any, part: Part) -> None:
-    for engine in ENGINES:
+    for engine, colour, style in zip(ENGINES, COLOURS, ("-", "--"), strict=False):
         speeds = np.sort(part.curves[f"{engine}_lps"])
         axis.step(speeds, (np.arange(len(speeds)) + 1) / len(speeds), where="post",
-                  label=f"{engine}, median {np.median(speeds):.3f}")  # fmt: skip
-    axis.set(xlabel="speed along the wanted direction [L/s]", ylabel="share of episodes", title=part.rows[0][0])
-    axis.legend(fontsize=8)
+                  color=colour, ls=style, lw=2, label=f"{engine}, median {np.median(speeds):.3f}")  # fmt: skip
+    axis.set(xlabel="speed along the wanted direction [rod lengths/s]", ylabel="share of episodes", title=part.rows[0][0])
+    thin_legend(axis)
 
 
 _PANELS = {"free flight": _paths, "commands": _paths, "settling": _heights, "steps": _tips, "episodes": _speeds}

@@ -68,6 +68,11 @@ def _draw_speeds(axis: Any, speeds_lps: Sequence[float]) -> None:
     thin_legend(axis)
 
 
+def _look(drive: int) -> dict[str, Any]:
+    """Colour of a drive, dashed where all colours are taken."""
+    return {"color": COLOURS[drive % len(COLOURS)], "ls": ("-", "--", ":")[drive // len(COLOURS) % 3]}
+
+
 def draw_tensions(axis: Any, recording: Recording) -> None:
     """Of the wound cables over time in their drives' colours, the elastic ones as a band, the drives' limit."""
     times, driven = recording.times, recording.model.driven
@@ -76,7 +81,7 @@ def draw_tensions(axis: Any, recording: Recording) -> None:
         low, high = elastic.min(axis=1), elastic.max(axis=1)
         axis.fill_between(times, low, high, color="0.85", lw=0, label="elastic cables, least to most")
     for d, values in enumerate(recording.tensions[:, driven].T):
-        axis.plot(times, values, color=COLOURS[d % len(COLOURS)], lw=1)
+        axis.plot(times, values, **_look(d), lw=1)
     limit = recording.limits.tension
     axis.axhline(limit, color="k", ls="--", lw=1, label="drive's limit")
     axis.set(xlabel="time [s]", ylabel="tension [N]", xlim=(times[0], times[-1]),
@@ -89,7 +94,7 @@ def draw_currents(axis: Any, recording: Recording, names: bool = True) -> None:
     """Of the drives over time, and their limits; with the drives' names and colours."""
     times = recording.times
     for d, values in enumerate(recording.currents.T):
-        axis.plot(times, values, color=COLOURS[d % len(COLOURS)], lw=1, label=f"drive {d + 1}" if names else None)
+        axis.plot(times, values, **_look(d), lw=1, label=f"drive {d + 1}" if names else None)
     for sign, label in ((-1, None), (1, "limits")):
         axis.axhline(sign * recording.limits.current, color="k", ls="--", lw=1, label=label)
     axis.set(xlabel="time [s]", ylabel="current [A]", title="Drives", xlim=(times[0], times[-1]))

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tensegym.plotting import COLOURS, new_figure, save
+from tensegym.plotting import COLOURS, new_figure, save, thin_legend
 from tensegym.robot.engines import TITLES
 
 ENGINE_COLOURS = dict(zip(TITLES, COLOURS, strict=False))
@@ -32,16 +32,17 @@ def draw_all(results: dict[str, dict[str, Any]], folder: Path) -> dict[str, Path
 
 def _axes(columns: int, width: float = 5.2) -> tuple[Any, list[Any]]:
     figure, axes = new_figure(1, columns, size=(width * columns, 3.6), squeeze=False)
-    for one in axes[0]:
-        one.grid(True, which="both", alpha=0.2)
-        one.spines[["top", "right"]].set_visible(False)
     return figure, list(axes[0])
 
 
 def _label(axes: Any, x: str, y: str, title: str = "") -> None:
     axes.set(xlabel=x, ylabel=y, title=title)
-    if axes.get_legend_handles_labels()[0]:
-        axes.legend(frameon=False, fontsize=8)
+    count = len(axes.get_legend_handles_labels()[0])
+    if count > 4 and len(axes.figure.axes) == 1:  # beside the curves, which leave no room for so many
+        axes.figure.set_figwidth(axes.figure.get_figwidth() + 2.6)
+        axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), fontsize="small", frameon=False)
+    elif count:
+        thin_legend(axes)
 
 
 MARKS = ("o", "s", "^", "d", "v", "x")
