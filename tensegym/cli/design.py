@@ -132,6 +132,9 @@ class Status:
 def open_search(folder: Path, storage: str | None = None) -> tuple[Problem, Store]:
     """The problem and the store of a search's folder. Raises InputError or FileNotFoundError."""
     note = folder / "storage.txt"
+    if folder.is_file():
+        where = folder.parent if (folder.parent / "storage.txt").is_file() else "the one of `tensegym design run --out`"
+        raise InputError(f"{folder} is a file, and a search is a folder; give {where}")
     if not note.is_file():
         raise FileNotFoundError(f"no search in {folder}; start one with `tensegym design run --out {folder}`")
     kept = read_text(note, "note of a search's storage", InputError)

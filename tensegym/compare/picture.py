@@ -54,7 +54,8 @@ def _speeds(axis: Any, part: Part) -> None:
         speeds = np.sort(part.curves[f"{engine}_lps"])
         axis.step(speeds, (np.arange(len(speeds)) + 1) / len(speeds), where="post",
                   color=colour, ls=style, lw=2, label=f"{engine}, median {np.median(speeds):.3f}")  # fmt: skip
-    axis.set(xlabel="speed along the wanted direction [rod lengths/s]", ylabel="share of episodes", title=part.rows[0][0])
+    axis.set(xlabel="speed along the wanted direction [rod lengths/s]", ylabel="share of episodes",
+             title=part.rows[0][0])  # fmt: skip
     thin_legend(axis)
 
 

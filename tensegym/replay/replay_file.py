@@ -29,7 +29,8 @@ from .scenery import scenery
 MOST_BYTES = 1 << 30  # of a recording when unpacked
 _SLOT = "RECORDING"
 _PAGE = ("replay.css", "unpack.js", "robot.js", "view.js", "plots.js", "replay.js")  # what replay.html is made of
-_PATTERN = re.compile(r'<script id="recording" type="text/plain">([A-Za-z0-9+/=]*)</script>')
+_BEGINS = '<script id="recording" type="text/plain">'
+_PATTERN = re.compile(_BEGINS + "([A-Za-z0-9+/=]*)</script>")
 
 
 def check_replay(path: Path, to_be: Path | None = None) -> None:
@@ -56,6 +57,8 @@ def read_replay(path: str | Path) -> Recording:
     text = read_text(path, "replay", InputError)
     with in_file(f"replay {path}"):
         found = _PATTERN.search(text)
+        if not found and _BEGINS in text:
+            raise InputError("its recording is cut off or damaged; copy it again, or record anew")
         if not found:
             raise InputError("there is no recording in it; tensegym roll --replay run.html writes one")
         try:

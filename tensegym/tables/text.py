@@ -34,6 +34,8 @@ def read_text(path: str | Path, what: str, error: Error, limit: int = LARGEST_FI
     """
     path = Path(path)
     try:
+        if path.is_dir():
+            raise FileNotFoundError(one_line(f"{path} is a folder; give a {what}, a file"))
         if not path.is_file():
             raise FileNotFoundError(one_line(f"no {what} {path}"))
         with path.open("rb") as file:

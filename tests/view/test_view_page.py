@@ -62,8 +62,21 @@ def test_an_address_of_another_machine_is_refused():
     (["--engine", "ode"], ["ode", "pybullet"]),
     (["--start", "1-2-3"], ["1-2-3"]),
     (["--port", "70000"], ["70000", "65535"]),
+    (["--study", "search/study.db"], ["search/study.db is a file", "give search"]),
+    (["--study", "note.html"], ["note.html is a file", "design run --out"]),
+    (["--study", "empty"], ["no search in empty"]),
+    (["--replay", "search"], ["search is a folder", "a file"]),
+    (["--replay", "note.html"], ["note.html", "no recording"]),
+    (["--replay", "cut.html"], ["cut.html", "cut off"]),
+    (["--design", "note.html"], ["note.html", ".toml"]),
 ])  # fmt: skip
-def test_what_cannot_be_shown_is_refused_in_one_line(cli, options, words):
+def test_what_cannot_be_shown_is_refused_in_one_line(cli, tmp_path, monkeypatch, options, words):
+    monkeypatch.chdir(tmp_path)
+    for folder in ("search", "empty"):
+        (tmp_path / folder).mkdir()
+    for file in ("search/storage.txt", "search/study.db", "note.html"):
+        (tmp_path / file).write_text("no page")
+    (tmp_path / "cut.html").write_text('<script id="recording" type="text/plain">eNqrVkrKTy')
     assert_refused(cli("view", *options), *words)
 
 

@@ -47,5 +47,5 @@ def draw_vibration(name: str, run: Vibration, path: Path) -> None:
     left.plot(run.time, np.degrees(run.theta), color=COLOURS[0])
     left.set(title=f"{name}: {run.frequency:.4g} Hz", xlabel="time [s]", ylabel=r"angle $\theta$ [deg]")
     right.plot(run.time, 1e3 * run.energy, color=COLOURS[0])
-    right.set(title="kinetic and elastic energy", xlabel="time [s]", ylabel="energy [mJ]", ylim=(0, 1.2e3 * run.energy.max()))
+    right.set(title="kinetic and elastic", xlabel="time [s]", ylabel="energy [mJ]", ylim=(0, 1.2e3 * run.energy.max()))
     save(figure, path)
