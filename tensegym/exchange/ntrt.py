@@ -9,6 +9,9 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Collection
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +25,7 @@ from .ntrt_builders import Builders, RodKind, read_builders
 from .ntrt_parts import Model, Pair
 from .table import Imported, kept, length_of, merged
 
+PLAIN_RODS = "rods"  # the tag of rods in no group, in what is written here; with a number where it is taken
 UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])  # its y axis, which is up, onto z
 
 
@@ -56,6 +60,7 @@ def read_ntrt(path: str | Path, units: str | None = None, pretension: float | No
             "nodes": made.nodes.tolist(), "rods": [place(pair) for pair, _ in rods],
             "cables": [place(pair) for pair, _ in cables], "stiff_cables": []},
     }  # fmt: skip
+    groups: dict[str, str] = {}
     for tag in dict.fromkeys(tag for _, tag in cables):
         kind = builders.cables[tag]
         pull = kind.pretension or pretension
@@ -63,9 +68,10 @@ def read_ntrt(path: str | Path, units: str | None = None, pretension: float | No
             raise InputError(one_line(f"NTRT model {path}: cables {show(tag)} have no pretension; give one in N"))
         group = {"pairs": [place(pair) for pair, other in cables if other == tag], "stiffness": kind.stiffness,
                  "damping": kind.damping, "pretension": pull}  # fmt: skip
-        table.setdefault("cables", {})[_group_name(tag)] = group
-    pulls = {tag: float(table["cables"][_group_name(tag)]["pretension"]) for _, tag in cables}
-    table |= _rods(made.nodes, [place(pair) for pair, _ in rods], [builders.rods[tag] for _, tag in rods])
+        groups[tag] = _group_name(tag, table.setdefault("cables", {}))
+        table["cables"][groups[tag]] = group
+    pulls = {tag: float(table["cables"][name]["pretension"]) for tag, name in groups.items()}
+    table |= _rods(made.nodes, [place(pair) for pair, _ in rods], [tag for _, tag in rods], builders.rods)
     notes = list(made.notes)
     if builders.left_out:
         notes.append(f"left out, as a design has no place for it: {', '.join(builders.left_out)}")
@@ -87,16 +93,21 @@ def _members(model: Model, builders: Builders, where: str) -> tuple[list[tuple[P
     return rods, cables
 
 
-def _group_name(tag: str) -> str:
-    """A group's name of a tag: letters first, blanks as _."""
-    name = "_".join(tag.split())[:40]
-    return name if name[:1].isalpha() else f"g_{name}"[:40]
+def _group_name(tag: str, taken: Collection[str]) -> str:
+    """A group's name of a tag: letters first, blanks as _; with a number behind it where that name is taken."""
+    name = "_".join(tag.split())
+    name = (name if name[:1].isalpha() else f"g_{name}")[:40]
+    tried = (f"{name[:36]}-{number}" for number in count(2))
+    return name if name not in taken else next(other for other in tried if other not in taken)
 
 
-def _rods(nodes: FloatArray, pairs: list[list[int]], kinds: list[RodKind]) -> dict[str, Any]:
-    """[passive_rod], and [rods] where they differ, of rods between nodes."""
+def _rods(nodes: FloatArray, pairs: list[list[int]], tags: list[str], kinds: dict[str, RodKind]) -> dict[str, Any]:
+    """[passive_rod], which is what the first is, and [rods] where they differ, of rods between nodes and their tags.
+
+    A group is named by its tag, or numbered where rods of one tag differ, as those of two lengths do.
+    """
     tables = []
-    for (a, b), kind in zip(pairs, kinds, strict=True):
+    for (a, b), kind in zip(pairs, (kinds[tag] for tag in tags), strict=True):
         length = float(np.linalg.norm(nodes[b - 1] - nodes[a - 1]))
         tables.append({
             "tube_mass": kind.density * np.pi * kind.radius**2 * length, "end_mass": 0.0,
@@ -105,11 +116,20 @@ def _rods(nodes: FloatArray, pairs: list[list[int]], kinds: list[RodKind]) -> di
         })  # fmt: skip
     unlike = list[dict[str, float]]()
     for table in tables:
-        if not any(np.allclose(list(table.values()), list(other.values()), rtol=1e-6) for other in unlike):
+        if not any(_same(table, other) for other in unlike):
             unlike.append(table)
-    found: dict[str, Any] = {"passive_rod": unlike[0], "friction": kinds[0].friction}
-    for number, own in enumerate(unlike[1:], 2):
-        members = [pair for pair, table in zip(pairs, tables, strict=True)
-                   if np.allclose(list(table.values()), list(own.values()), rtol=1e-6)]  # fmt: skip
-        found.setdefault("rods", {})[f"rod_{number}"] = {"pairs": members, **own}
+    found: dict[str, Any] = {"passive_rod": unlike[0], "friction": kinds[tags[0]].friction}
+    members = [[row for row, table in enumerate(tables) if _same(table, own)] for own in unlike]
+    first_tags = [tags[rows[0]] for rows in members]
+    for number, (own, rows, tag) in enumerate(zip(unlike, members, first_tags, strict=True), 1):
+        told_apart = first_tags.count(tag) == 1
+        plain = re.fullmatch(rf"{PLAIN_RODS}(-\d+)?", tag) or not told_apart
+        if len(unlike) == 1 or (number == 1 and plain):
+            continue  # they are what [passive_rod] says
+        groups = found.setdefault("rods", {})
+        groups[_group_name(tag if told_apart else f"rod_{number}", groups)] = {"pairs": [pairs[r] for r in rows], **own}
     return found
+
+
+def _same(one: dict[str, float], other: dict[str, float]) -> bool:
+    return np.allclose(list(one.values()), list(other.values()), rtol=1e-6)

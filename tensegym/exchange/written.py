@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from itertools import groupby
+from collections.abc import Hashable, Sequence
+from itertools import count, groupby
 
 import numpy as np
 
-from tensegym.arrays import FloatArray, IntArray
+from tensegym.arrays import IntArray
 from tensegym.design.design import RobotDesign
 from tensegym.design.groups import group_names
-from tensegym.design.parameters import ElasticCable, Rod
+from tensegym.design.parameters import ElasticCable
 
-from .ntrt import UP
+from .ntrt import PLAIN_RODS, UP
 from .table import length_of
 
 
 def ntrt_text(design: RobotDesign, units: str = "m") -> str:
-    """An NTRT model of the standing design; rods as solid cylinders of their mass and radius.
+    """An NTRT model of the standing design; rods as solid cylinders of their mass and radius. Groups are tags.
 
     Args:
         design: drives, payload and flexures are left out; NTRT's cables are actuators themselves.
@@ -28,17 +29,18 @@ def ntrt_text(design: RobotDesign, units: str = "m") -> str:
     lines += [f"  n{i}: [{', '.join(_number(x) for x in xyz + 0.0)}]" for i, xyz in enumerate(nodes, 1)]
     pairs, builders = ["pair_groups:"], ["builders:"]
     names = group_names(design.cables, structure.cables)
-    tags = [f"cable_{name}" if name else "cables" for name in names]
-    for tag, rows in _alike(_by_tension(tags, design.rest_tensions)):
+    cable_tags = _tags(names, [f"{pull:.9g}" for pull in design.rest_tensions.tolist()], "cables")
+    for tag, rows in _alike(cable_tags):
         cable: ElasticCable = design.each_cable[rows[0]]
         pull = float(design.rest_tensions[rows[0]])
         pairs += _rows(tag, structure.cables[rows])
         builders += _builder(tag, "tgBasicActuatorInfo", {
             "stiffness": cable.stiffness, "damping": cable.damping,
             "pretension": 0.0 if np.isnan(pull) else pull / unit})  # fmt: skip
-    kinds = [f"rod_{kind}" for kind in _numbers([(design.rod(i), round(length, 9))
-             for i, length in enumerate(structure.rod_lengths.tolist())])]  # fmt: skip
-    for tag, rows in _alike(kinds):
+    kinds = [(design.rod(i), round(length, 9)) for i, length in enumerate(structure.rod_lengths.tolist())]
+    names = group_names(design.rods, structure.rods)
+    alike = _alike(_tags(names, kinds, PLAIN_RODS, cable_tags))
+    for tag, rows in sorted(alike, key=lambda each: names[each[1][0]] != ""):  # those in no group are read first
         rod, length = design.rod(rows[0]), float(structure.rod_lengths[rows[0]]) / unit
         radius = rod.tube_outer_radius / unit
         pairs += _rows(tag, structure.rods[rows])
@@ -47,22 +49,22 @@ def ntrt_text(design: RobotDesign, units: str = "m") -> str:
     return "\n".join([*lines, *pairs, *builders, ""])
 
 
-def _by_tension(tags: list[str], tensions: FloatArray) -> list[str]:
-    """A tag of its own for each tension of a group, as cables have whose nodes are kept."""
-    unlike: dict[str, list[str]] = {}
-    made = []
-    for tag, tension in zip(tags, tensions.tolist(), strict=True):
-        seen, pull = unlike.setdefault(tag, []), f"{tension:.9g}"
-        if pull not in seen:
-            seen.append(pull)
-        made.append(f"{tag}-{seen.index(pull) + 1}" if seen.index(pull) else tag)
-    return made
 
 
-def _numbers(values: list[tuple[Rod, float]]) -> list[int]:
-    """From 1, the same for equal ones."""
-    unlike = list(dict.fromkeys(values))
-    return [unlike.index(value) + 1 for value in values]
+def _tags(names: Sequence[str], kinds: Sequence[Hashable], plain: str, taken: Sequence[str] = ()) -> list[str]:
+    """One for each kind of member of each group: the group's name, or ``plain`` of those in none; with a number from
+    the second kind on, as of the tensions of a group whose nodes are kept, or where the tag is taken."""
+    used, made = {*names, *taken}, dict[tuple[str, Hashable], str]()
+    for name, kind in zip(names, kinds, strict=True):
+        if (name, kind) in made:
+            continue
+        own, first = name or plain, name not in {group for group, _ in made}
+        free = first and own not in (taken if name else used)
+        made[name, kind] = own if free else next(
+            tag for number in count(2) if (tag := f"{own[:36]}-{number}") not in used
+        )  # fmt: skip
+        used.add(made[name, kind])
+    return [made[member] for member in zip(names, kinds, strict=True)]
 
 
 def _alike(tags: list[str]) -> list[tuple[str, list[int]]]:
@@ -72,12 +74,17 @@ def _alike(tags: list[str]) -> list[tuple[str, list[int]]]:
 
 
 def _rows(tag: str, pairs: IntArray) -> list[str]:
-    return [f"  {tag}:", *(f"    - [n{a}, n{b}]" for a, b in (pairs + 1).tolist())]
+    return [f"  {_key(tag)}:", *(f"    - [n{a}, n{b}]" for a, b in (pairs + 1).tolist())]
 
 
 def _builder(tag: str, kind: str, parameters: dict[str, float]) -> list[str]:
     given = ", ".join(f"{name}: {_number(value)}" for name, value in parameters.items())
-    return [f"  {tag}:", f"    class: {kind}", f"    parameters: {{{given}}}"]
+    return [f"  {_key(tag)}:", f"    class: {kind}", f"    parameters: {{{given}}}"]
+
+
+def _key(tag: str) -> str:
+    """In quotation marks what YAML 1.1 takes for a truth or for nothing."""
+    return f'"{tag}"' if tag.lower() in ("y", "n", "yes", "no", "on", "off", "true", "false", "null") else tag
 
 
 def _number(value: float) -> str:

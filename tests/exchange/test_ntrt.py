@@ -5,8 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
 
 from tensegym.design.design_file import design_from_dict
+from tensegym.design.groups import group_names
 from tensegym.errors import InputError
 from tensegym.exchange import ntrt_text, read_ntrt
 from tensegym.structures import Prism
@@ -63,6 +66,62 @@ def assert_same(design, back):
     assert mine.keys() == found.keys()
     for pair, cable in mine.items():
         assert found[pair] == pytest.approx(cable)
+
+
+def names_of(design):
+    """Of each cable and rod by its nodes, the group's."""
+    rods, cables = design.structure.rods, design.structure.cables
+    return {kind: {frozenset(pair): name for pair, name in zip(pairs.tolist(), group_names(groups, pairs), strict=True)}
+            for kind, groups, pairs in (("cables", design.cables, cables), ("rods", design.rods, rods))}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["prism3", "prism4", "six_bar", "double_prism", "spine"])
+def test_groups_keep_their_names_twice_round(tmp_path, name):
+    """In the spine's hangers are two tensions, 17 parts in a million apart: one keeps the name, the other a number."""
+    first = design_from_dict(read_ntrt(CASES / f"{name}.yaml", "dm", 8.0).table)
+    once = back_from(tmp_path, first, "dm")
+    assert names_of(back_from(tmp_path, once, "dm")) == names_of(once)
+    before, after = names_of(first), names_of(once)
+    assert after["rods"] == before["rods"]
+    assert {pair: group.removesuffix("-2") for pair, group in after["cables"].items()} == before["cables"]
+    assert (name == "spine") == (after["cables"] != before["cables"])
+
+
+likely_to_clash = st.sampled_from(["rod", "rods", "rods-2", "string", "cables", "on", "No", "null", "a", "a-2"])
+a_name = st.one_of(likely_to_clash, st.from_regex(r"[A-Za-z][A-Za-z0-9_-]{0,39}", fullmatch=True))
+
+
+@settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(a_name, min_size=3, max_size=3, unique=True), st.sampled_from([4, 5]))
+@example(["rods", "cables", "rod"], 4)
+@example(["a" * 40, "a" * 39 + "b", "yes"], 4)
+def test_groups_of_any_name_come_back(tmp_path, names, rods):
+    plan = Prism(rods).build()
+    around, upright = (
+        {"pairs": (plan.cables[own] + 1).tolist(), "pretension": 9.0 * plan.tensions[own]} for own in plan.cables
+    )
+    structure = {"nodes": plan.nodes.tolist(), "rods": (plan.rods + 1).tolist(), "stiff_cables": [],
+                 "cables": (plan.all_cables + 1).tolist()}  # fmt: skip
+    heavy = {"pairs": (plan.rods[1:3] + 1).tolist(), "end_mass": 0.2}
+    design = design_from_dict({"structure": structure, "cables": dict(zip(names, (around, upright), strict=False)),
+                               "rods": {names[2]: heavy}})  # fmt: skip
+    once = back_from(tmp_path, design, "m")
+    assert names_of(once) == names_of(design)
+    assert names_of(back_from(tmp_path, once, "m")) == names_of(design)
+    assert_same(design, once)
+
+
+def test_tags_that_would_make_one_group_name_are_told_apart(tmp_path):
+    kinds = {"a b": {"class": "tgBasicActuatorInfo", "parameters": {"pretension": 100}},
+             "a_b": {"class": "tgBasicActuatorInfo", "parameters": {"pretension": 200}}}  # fmt: skip
+    pairs = small()["pair_groups"]
+    cables = pairs.pop("tendon")
+    builders = {tag: own for tag, own in small()["builders"].items() if tag != "tendon"} | kinds
+    path = written(tmp_path, **small(pair_groups=pairs | {"a b": cables[:4], "a_b": cables[4:]}, builders=builders))
+    groups = read_ntrt(path, "dm").table["cables"]
+    assert {name: (len(group["pairs"]), group["pretension"]) for name, group in groups.items()} == {
+        "a_b": (4, 10.0), "a_b-2": (5, 20.0)
+    }  # fmt: skip
 
 
 def test_rods_that_share_nodes_are_kept_where_the_files_tensions_do_not_balance(tmp_path):
