@@ -1,4 +1,4 @@
-"""A robot on each obstacle of the course: one picture of all, and a video each.
+"""A robot on each obstacle of the course: one picture of all, and a video of each and of all in a row.
 
     python benchmarks/course_pictures.py --policy rolling --picture docs/course.png --videos course
 
@@ -48,7 +48,7 @@ class Frames:
 
 @dataclass(frozen=True)
 class Pictures:
-    """A picture of all obstacles and a video of each."""
+    """A picture of all obstacles, a video of each and of all in a row."""
 
     policy: str = "rolling"
     """A shipped policy or a run's folder."""
@@ -68,10 +68,11 @@ class Pictures:
             axis.set_title(name)
             lines.append(f"{name}: {ended} after {len(watched.frames) * watched.period:.0f} s")
             if self.videos:
-                self.videos.mkdir(parents=True, exist_ok=True)
-                first, *rest = (Image.fromarray(frame) for frame in watched.frames)
-                with replace_path(self.videos / f"{name}.webp") as fresh:
-                    first.save(fresh, format="webp", save_all=True, append_images=rest, duration=100, quality=60)
+                _film(watched, self.videos / f"{name}.webp")
+        if self.videos:
+            watched, ended = self._watched("all")
+            _film(watched, self.videos / "all.webp")
+            lines.append(f"all: {ended} after {len(watched.frames) * watched.period:.0f} s")
         for axis in axes.flat:
             axis.axis("off")
         _draw_key(axes.flat[-1])
@@ -93,6 +94,15 @@ class Pictures:
                     return frames, result.ended
         assert first is not None
         return first
+
+
+def _film(watched: Frames, file: Path) -> None:
+    """An animation at true speed, of half the pictures' size, which is a fifth of the bytes."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    first, *rest = (Image.fromarray(frame).reduce(2) for frame in watched.frames[::2])
+    with replace_path(file) as fresh:
+        pace = round(2000 * watched.period)
+        first.save(fresh, format="webp", save_all=True, append_images=rest, duration=pace, quality=60)
 
 
 def _draw_key(axis: Any) -> None:
