@@ -1,6 +1,6 @@
 """What a choice in a training's config is worth: short trainings that differ from a base in that choice alone.
 
-    python benchmarks/training_trials.py --base sprint --steps 51200 --out runs/trials
+    python benchmarks/training_trials.py --base four_rod --steps 64000 --out runs/trials
 
 From nothing, on the base's body, by equal numbers of environment steps. A killed run goes on where it was when it is
 started again. The speed is the curve's over its last quarter: median of the training's own episodes, exploration noise
@@ -57,9 +57,9 @@ def variants(base: TrainConfig) -> Iterator[tuple[str, dict[str, Any], dict[str,
 class Trials:
     """Short trainings from nothing, one after another."""
 
-    base: str = "sprint"
+    base: str = "four_rod"
     """Config that all are like but in one thing."""
-    steps: int = 51_200
+    steps: int = 64_000
     """Environment steps of each."""
     seeds: int = 3
     """Of the base; the others have the first."""
