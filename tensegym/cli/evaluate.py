@@ -31,8 +31,8 @@ class Evaluate:
     """Evaluate a policy and the baselines from random faces and headings; writes metrics.json, gait.png, roll.mp4."""
 
     policy: str = "rolling"
-    """A run's folder, or a shipped policy: rolling, onboard, flexible, carry, climb, steep, sprint, agile,
-    agile_onboard, steer, steer_first, robust, four_rod, conditioned."""
+    """A run's folder, or a shipped policy: rolling, onboard, fast, flexible, carry, climb, steep, sprint, agile,
+    agile_onboard, steer, steer_onboard, steer_first, robust, three_rod, four_rod, four_rod_fast, conditioned."""
     out: Path = Path("evaluation")
     """Folder for metrics.json, gait.png and roll.mp4."""
     episodes: Count = 100

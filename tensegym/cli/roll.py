@@ -24,8 +24,8 @@ class Roll:
     """Watch the shipped policy roll: a quick evaluation with pictures and a video; baselines for the default robot."""
 
     policy: str = "rolling"
-    """A run's folder, or a shipped policy: rolling, onboard, flexible, carry, climb, steep, sprint, agile,
-    agile_onboard, steer, steer_first, robust, four_rod, conditioned."""
+    """A run's folder, or a shipped policy: rolling, onboard, fast, flexible, carry, climb, steep, sprint, agile,
+    agile_onboard, steer, steer_onboard, steer_first, robust, three_rod, four_rod, four_rod_fast, conditioned."""
     out: Path = Path("roll")
     """Folder for metrics.json, gait.png and roll.mp4."""
     episodes: Count = 10
