@@ -42,8 +42,10 @@ def symmetries(design: RobotDesign, tolerance: float = 1e-6) -> list[Symmetry]:
     images = np.array(list(permutations(range(len(nodes)), 3)))
     products = nodes @ nodes.T
     same = np.isclose(products[images[:, :, None], images[:, None]], products[np.ix_(triple, triple)], atol=tolerance)
-    found = []
+    found, hand = [], np.linalg.det(nodes[triple])
     for target in images[same.all(axis=(1, 2))]:
+        if np.linalg.det(nodes[target]) * hand < 0:  # a mirror image, onto which no rotation takes the three
+            continue
         turn = Rotation.align_vectors(nodes[target], nodes[triple])[0].as_matrix()
         distances = np.linalg.norm((nodes @ turn.T)[:, None] - nodes, axis=2)
         perm = distances.argmin(axis=1)

@@ -25,7 +25,7 @@ def test_a_table_of_tips_that_is_not_there_says_what_to_do_instead(kind, name):
 
 
 def test_a_table_of_holds_that_is_not_there_says_how_to_make_one():
-    with pytest.raises(FileNotFoundError, match=r"^no table of holds nobody; make one with `python benchmarks/holds.py`"):
+    with pytest.raises(FileNotFoundError, match=r"^no table of holds nobody; make one with `python bench"):
         make_controller({"kind": "stepper", "holds": "nobody"})
 
 
