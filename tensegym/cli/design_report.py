@@ -57,7 +57,9 @@ class DesignReport:
         rows = [[name, *(column[key] for key in shown)] for name, column in data["confirmed"].items()]
         header = ["", *shown.values()]
         gains = "".join(f"\n{each['text']}" for each in data["gains"])
-        text = table(header, rows) + f"{gains}\ngoal {data['goal']}: {'met' if data['goal_met'] else 'not met'}"
+        kept = "".join(f"\n{each['text']}" for each in data["constraints"])
+        reached = "reached" if data["goal_met"] else "not reached"
+        text = table(header, rows) + f"{gains}{kept}\nthe goal {data['goal']} is {reached}: {data['goal_mean']:.4g}"
         return Report(f"{text}\n{self.folder / 'report.md'}", data)
 
 

@@ -9,6 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tensegym.tasks.bound import Bound
+
 from .evaluate import Episode, TrialSpec, try_all
 from .problem import Problem
 from .space import Tables
@@ -94,6 +96,25 @@ def gain(start: Sequence[Episode], found: Sequence[Episode], metric: str) -> Gai
     reach = 1.96 * float(apart.std(ddof=1)) / math.sqrt(len(apart))
     mean = float(apart.mean())
     return Gain(metric, mean, mean - reach, mean + reach, float(before.mean()))
+
+
+class Verdict(NamedTuple):
+    """Whether a bound holds for the mean of many episodes."""
+
+    bound: str
+    mean: float
+    kept: bool
+
+    @property
+    def text(self) -> str:
+        """What it says in words, as in "slip_share <= 0.27 is not kept: 0.28 in the mean"."""
+        return f"{self.bound} is {'kept' if self.kept else 'not kept'}: {self.mean:.4g} in the mean"
+
+
+def judge(bound: Bound, rows: Sequence[Episode]) -> Verdict:
+    """Of a goal or a constraint over new starts."""
+    mean = float(np.mean([row[bound.metric] for row in rows]))
+    return Verdict(str(bound), mean, bound.violation({bound.metric: mean}) <= 0)
 
 
 def summary(rows: Sequence[Episode]) -> dict[str, float]:

@@ -20,7 +20,7 @@ from tensegym.design.urdf_writer import urdf_files
 from tensegym.files import VERSION, replace_path, write_text
 from tensegym.robot.standing import standing_verdict
 
-from .confirm import FIRST_SEED, TIME_STEP, Confirmed, gain, summary
+from .confirm import FIRST_SEED, TIME_STEP, Confirmed, gain, judge, summary
 from .figures import draw_best_gait, draw_importance, draw_pareto, draw_progress
 from .problem import Problem
 from .store import Finished, Store
@@ -105,14 +105,16 @@ def write_report(
 
     goal = problem.task.goal.metric
     columns = {
-        f"{who}, {1e3 * dt:g} ms": {"goal_metric_mean": float(np.mean([row[goal] for row in rows]))} | summary(rows)
+        f"{who}, {1e3 * dt:g} ms": {"goal_metric_mean": judge(problem.task.goal, rows).mean} | summary(rows)
         for (who, dt), rows in confirmed.rows.items()
     }
     gains = [gain(confirmed.rows["start", TIME_STEP], found, metric)
              for metric in dict.fromkeys((objectives[0].metric, goal, "speed_lps"))]  # fmt: skip
     verdict = standing_verdict(design, problem.task.engine)
-    met = problem.task.goal.violation({k: float(np.mean([r[k] for r in found])) for k in found[0]}) <= 0
-    data = {"folder": str(folder), "goal": str(problem.task.goal), "goal_met": met, "trial": confirmed.number,
+    reached = judge(problem.task.goal, found)
+    constraints = [judge(each, found) for each in problem.settings.constraints]
+    data = {"folder": str(folder), "goal": reached.bound, "goal_met": reached.kept, "goal_mean": reached.mean,
+            "constraints": [each._asdict() | {"text": each.text} for each in constraints], "trial": confirmed.number,
             "trials": len(finished), "seconds": store.seconds(), "confirmed": columns, "importance": shares,
             "gains": [each._asdict() | {"text": each.text} for each in gains],
             "standing": verdict.as_dict(), "stands": verdict.text,
@@ -131,9 +133,13 @@ def _lines(problem: Problem, store: Store, values: dict[str, Any], data: dict[st
     settings, columns = problem.settings, data["confirmed"]
     yield f"# Search for a design: {problem.task.motion}"
     yield ""
-    yield (f"Goal: mean {problem.task.goal} over {next(iter(columns.values()))['episodes']} new starts. "
-           f"**{'Met' if data['goal_met'] else 'Not met'}** by trial {data['trial']} of {data['trials']}; "
-           f"{settings.sampler}, seed {settings.seed}, {data['seconds'] / 60:.0f} minutes.")  # fmt: skip
+    yield (f"The goal, {data['goal']}, is **{'reached' if data['goal_met'] else 'not reached'}**: "
+           f"{data['goal_mean']:.4g} in the mean of {next(iter(columns.values()))['episodes']} new starts, by trial "
+           f"{data['trial']} of {data['trials']}; {settings.sampler}, seed {settings.seed}, "
+           f"{data['seconds'] / 60:.0f} minutes.")  # fmt: skip
+    if data["constraints"]:
+        yield ""
+        yield f"On the same starts: {'; '.join(each['text'] for each in data['constraints'])}."
     yield ""
     shown_rows = {"goal_metric_mean": f"{problem.task.goal.metric}, mean"} | _ROWS
     yield from _table(["", *columns], [[what, *(c[key] for c in columns.values())] for key, what in shown_rows.items()])

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from tensegym.search.confirm import gain
+from tensegym.search.confirm import gain, judge
+from tensegym.tasks.bound import Bound
 
 
 def episodes(speeds):
@@ -23,3 +24,13 @@ def test_the_winner_is_said_to_be_slower_where_it_is(apart, word):
     wobble = np.tile([-0.05, 0.05], 20)
     text = gain(episodes(np.full(40, 0.3)), episodes(0.3 + apart + wobble), "speed_lps").text
     assert text.startswith(f"speed_lps is {word} the start's: ") and text.endswith("from 0.3")
+
+
+@pytest.mark.parametrize(("bound", "kept"), [
+    ("speed_lps >= 0.25", True), ("speed_lps >= 0.3", False), ("speed_lps <= 0.25", True), ("speed_lps <= 0.2", False),
+])  # fmt: skip
+def test_a_goal_that_is_not_reached_is_said_so(bound, kept):
+    """By the mean, whatever single episodes do."""
+    verdict = judge(Bound.parse(bound), episodes([0.0, 0.25, 0.5]))
+    assert (verdict.kept, verdict.mean) == (kept, 0.25)
+    assert verdict.text == f"{bound} is {'kept' if kept else 'not kept'}: 0.25 in the mean"

@@ -33,6 +33,8 @@ def test_run_status_resume_report(cli, tiny_file, tmp_path):
     text = (out / "report.md").read_text()
     assert report["gains"][0]["text"] in text and " the start's: " in text
     assert "| speed_lps, mean |" in text
+    reached = "reached" if found["goal_metric_mean"] >= 0.2 else "not reached"
+    assert f"The goal, speed_lps >= 0.2, is **{reached}**: {found['goal_metric_mean']:.4g} in the mean" in text
     assert "design.elastic_cable.pretension" in text and "![gait" in text
     for name in ("progress.png", "gait.png", "best/design.toml", "best/controller.toml", "best/urdf/payload.urdf"):
         assert (out / name).is_file() == (name != "best/urdf/payload.urdf")
