@@ -96,11 +96,11 @@ def test_a_space_is_needed():
 
 
 @pytest.mark.parametrize("name", [
-    "agile", "carry", "carry_conditioned", "climb", "climb_untaught", "course", "cross", "prism", "roll", "sprint",
-    "step", "three_rod",
+    "agile", "carry", "carry_conditioned", "climb", "climb_untaught", "course", "cross", "four_rod", "prism", "roll",
+    "sprint", "step", "three_rod",
 ])  # fmt: skip
 def test_shipped_task_files_are_sound(name):
     problem = load_problem(name)
-    other = {"agile": "places", "sprint": "roll", "prism": "roll", "three_rod": "roll"}
+    other = {"agile": "places", "sprint": "roll", "prism": "roll", "three_rod": "roll", "four_rod": "roll"}
     assert problem.task.motion == other.get(name, name.split("_")[0])
     assert set(problem.space.start) == {d.name for d in problem.space.dimensions}
