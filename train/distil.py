@@ -50,7 +50,8 @@ class Distil:
 
     def _generator(self, examples: _Examples, kinds: IntArray) -> CpgController:
         weights = fit(np.array(examples.terms), np.array(examples.commands), kinds)
-        return CpgController(Cpg(feedback=tuple(weights.ravel())))
+        count = len(weights)
+        return CpgController(Cpg(feedback=tuple(weights.ravel()), amplitudes=(0.4,) * count, lags=(0.0,) * count))
 
 
 class _Examples:

@@ -57,9 +57,9 @@ class DesignReport:
         rows = [[name, *(column[key] for key in shown)] for name, column in data["confirmed"].items()]
         header = ["", *shown.values()]
         gains = "".join(f"\n{each['text']}" for each in data["gains"])
-        kept = "".join(f"\n{each['text']}" for each in data["constraints"])
+        bounds = "".join(f"\n{each['text']}" for each in data["constraints"])
         reached = "reached" if data["goal_met"] else "not reached"
-        text = table(header, rows) + f"{gains}{kept}\nthe goal {data['goal']} is {reached}: {data['goal_mean']:.4g}"
+        text = table(header, rows) + f"{gains}{bounds}\nthe goal {data['goal']} is {reached}: {data['goal_mean']:.4g}"
         return Report(f"{text}\n{self.folder / 'report.md'}", data)
 
 
