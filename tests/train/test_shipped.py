@@ -19,6 +19,7 @@ FIGURES = {name: float(median) for name, what, median in ROWS if "half the time 
 """Median speed of each policy over a hundred episodes [rod lengths a second], as the page has it."""
 HELD = 0.85
 SEEDS = range(FIRST_SEED + 58, FIRST_SEED + 70)  # the twelve in a row whose medians come nearest to the hundreds'
+FALLS = {"three_rod"}  # flat on the ground in 11 of 100 episodes, which make no way: docs/structures.md
 POLICIES = sorted(p.name for p in shipped("rolling").parent.iterdir() if (p / "config.yaml").is_file())
 
 
@@ -29,8 +30,9 @@ def test_every_shipped_policy_has_its_figure():
 @pytest.mark.parametrize("name", POLICIES)
 def test_holds_its_figure_without_sliding_or_free_energy(name):
     results = run_trials(policy_setup(name), SEEDS, quiet=True)
-    assert all(result.sound for result in results)
-    assert np.median([result.gait.speed_lps for result in results]) >= HELD * FIGURES[name]
+    assert all(result.gait.audit_passed and not result.diverged for result in results)
+    assert name in FALLS or not any(result.fallen for result in results)
+    assert np.median([result.scores()["speed_lps"] for result in results]) >= HELD * FIGURES[name]
     assert np.median([result.gait.slip_share for result in results]) < 0.3
     assert np.median([result.gait.tips for result in results]) > 10
 
