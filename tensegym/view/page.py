@@ -9,7 +9,9 @@ import logging
 import socket
 from typing import Any
 
+import numpy as np
 import viser
+from numpy.typing import ArrayLike, NDArray
 
 from tensegym.errors import InputError
 
@@ -56,6 +58,13 @@ class Page(viser.ViserServer):
 
     def __exit__(self, *_: Any) -> None:
         self.stop()
+
+
+def linear(colours: ArrayLike) -> NDArray[np.uint8]:
+    """Colours (..., 3), 0 to 255, for batches of meshes and for arrows: viser takes those as linear light, where it takes
+    all others as sRGB (IEC 61966-2-1)."""
+    share = np.asarray(colours) / 255
+    return np.round(255 * np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)).astype(np.uint8)
 
 
 def _check_free(host: str, port: int) -> None:

@@ -47,10 +47,9 @@ class Player:
         self.surroundings = Surroundings(page, Stage(first.design, first.ground, first.gravity, first.path))
         self.scenes = []
         for n, each in enumerate(recordings):
-            scene = RobotScene(page, Stage(each.design, each.ground, each.gravity, each.path), f"/world/robot {n + 1}")
             across = _APART * length * n - width / 2
-            scene.root.position = (0.0, across, 0.0)
-            self.scenes.append(scene)
+            stage = Stage(each.design, each.ground, each.gravity, each.path)
+            self.scenes.append(RobotScene(page, stage, f"/world/robot {n + 1}", across))
             if names:
                 page.scene.add_label(f"/world/name {n + 1}", names[n], position=(0.0, across, 1.2 * length),
                                      anchor="bottom-center")  # fmt: skip

@@ -16,7 +16,7 @@ from .page import Page
 
 SPAN = 10.0  # s that are shown
 _MOST = 150  # points a line
-_HEIGHT, _MARGIN = 190, (12, 12, 0, 0)  # pixels; above and to the right for half a number of an axis
+_HEIGHT, _MARGIN = 172, (12, 12, 0, 0)  # pixels; above and to the right for half a number of an axis
 
 
 class Plots:
@@ -68,7 +68,8 @@ def _colour(drive: int) -> str:
 
 def _plot(page: Page, title: str, names: list[str], limit: float) -> tuple[Any, float]:
     bare: dict[str, Any] = {"points": {"show": False}}
-    lines = [{"label": name, "stroke": _colour(n), "width": 1.5, **bare} for n, name in enumerate(names)]
+    lines = [{"label": name, "stroke": _colour(n), "width": 1.5, "dash": [] if n < len(COLOURS) else [5, 3], **bare}
+             for n, name in enumerate(names)]  # fmt: skip
     limit_line = {"label": "limit", "stroke": "#888888", "width": 1, "dash": [6, 4], **bare}
     empty = tuple(np.zeros(1) for _ in range(len(lines) + 2))
     plot = page.gui.add_uplot(

@@ -15,7 +15,7 @@ from tensegym.robot.sight import SLACK_BELOW, cable_ends, tension_colours
 from tensegym.structure.faces import hull_faces
 
 from .frame import Frame, Stage
-from .page import Page
+from .page import Page, linear
 
 UNIT: dict[str, Any] = {
     "cylinder": lambda: trimesh.creation.cylinder(radius=1.0, height=1.0, sections=16),
@@ -38,9 +38,11 @@ class RobotScene:
         page: to draw into.
         stage: the robot, and what stands around it.
         name: of the frame in the page's tree that everything hangs on.
+        aside: how far beside where it was it is shown, along y [m].
     """
 
-    def __init__(self, page: Page, stage: Stage, name: str = "/world/robot") -> None:
+    def __init__(self, page: Page, stage: Stage, name: str = "/world/robot", aside: float = 0.0) -> None:
+        self._aside = aside
         self._model = robot_model(stage.design)
         self._faces = hull_faces(stage.design.standing).triangles
         self._solids = solids(stage.design)
@@ -68,28 +70,35 @@ class RobotScene:
         of = [self._solids[k] for k in self._of(kind)]
         colours = np.array([solid.colour for solid in of])
         sides = np.array([_sides(solid, _TUBE * self._length) for solid in of])
-        return _batched(page, name, kind, sides, (255 * colours[:, :3]).astype(np.uint8), colours[:, 3])
+        return _batched(page, name, kind, sides, linear(255 * colours[:, :3]), colours[:, 3])
 
     def draw(self, frame: Frame) -> None:
-        """Show a frame."""
-        poses = frame.poses
+        """Show a frame.
+
+        All parts are placed about the frame below the centre of mass: a browser moves frames at once, and takes batches
+        in when it comes to it.
+        """
+        masses = self._model.masses
+        here = np.append(masses @ frame.poses[:, :2] / masses.sum(), 0.0)
+        self.root.position = tuple(here + [0.0, self._aside, 0.0])
+        poses = np.column_stack([frame.poses[:, :3] - here, frame.poses[:, 3:]])
         places, turns = middles(self._solids, poses), wxyz(poses[[solid.body for solid in self._solids], 3:])
         for kind, batch in self._batches.items():
             of = self._of(kind)
             batch.batched_positions, batch.batched_wxyzs = places[of], turns[of]
         self._draw_cables(cable_ends(self._model, poses), frame.tensions)
         nodes = points_at(poses, self._model.node_bodies, self._model.node_points)
-        centre = self._model.masses @ poses[:, :3] / self._model.masses.sum()
+        centre = masses @ poses[:, :3] / masses.sum()
         corners = nodes[self._faces[frame.face]]
         self._support.points = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
         corners[:, 2] = corners[:, 2].mean() - self._model.foot_radii.mean() + _LIFT * self._length
-        below = np.array([*centre[:2], corners[0, 2]])
-        self._plumb.points = np.stack([centre, below])[None]
-        self._centre.position, self._foot.position = tuple(centre), tuple(below)
+        foot = np.array([*centre[:2], corners[0, 2]])
+        self._plumb.points = np.stack([centre, foot])[None]
+        self._centre.position, self._foot.position = tuple(centre), tuple(foot)
         if self._labels[0].visible:
             for label, node in zip(self._labels, nodes, strict=True):
                 label.position = tuple(node)
-        self.centre = centre
+        self.centre = centre + here
 
     def _draw_cables(self, ends: FloatArray, tensions: FloatArray) -> None:
         spans = ends[:, 1] - ends[:, 0]
@@ -98,7 +107,7 @@ class RobotScene:
         self._cables.batched_positions = ends.mean(axis=1)
         self._cables.batched_wxyzs = _turns_of_z(spans / np.maximum(lengths, 1e-12)[:, None])
         self._cables.batched_scales = np.column_stack([radii, radii, lengths])
-        self._cables.batched_colors = tension_colours(tensions).astype(np.uint8)
+        self._cables.batched_colors = linear(tension_colours(tensions))
 
     def show_support(self, on: bool) -> None:
         """Support triangle, centre of mass and its projection."""

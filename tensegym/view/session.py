@@ -154,7 +154,7 @@ class Session:
         if episode.diverged:
             return f"stopped: {episode.ended}"
         gait = episode.gait
-        return f"{gait.tips} tips, {gait.speed_lps:.2f} L/s, slip {gait.slip_share:.2f}, {gait.energy:.3g} J"
+        return f"{gait.tips} tips, {gait.speed_lps:.2f} L/s, slip {gait.slip_share:.2f}, {gait.energy:.0f} J"
 
 
 class _Seen:

@@ -13,7 +13,7 @@ from tensegym.robot.sight import upward
 from tensegym.robot.surface import draped, on_top
 
 from .frame import Frame, Stage
-from .page import Page
+from .page import Page, linear
 
 _MOST_ROWS = 301  # of bumps that are drawn, about the origin
 _GOAL, _PATH, _EARTH = (213, 94, 0), (230, 159, 0), (200, 200, 195)
@@ -50,7 +50,7 @@ class Surroundings:
             page.scene.add_line_segments("/world/path", np.stack([points[:-1], points[1:]], axis=1), _PATH,
                                          thickness=0.01 * length)  # fmt: skip
         self._arrow = page.scene.add_arrows(
-            "/world/direction", np.zeros((1, 2, 3)), _GOAL, shaft_radius=0.012 * length, head_radius=0.03 * length,
+            "/world/direction", np.zeros((1, 2, 3)), linear(_GOAL), shaft_radius=0.012 * length, head_radius=0.03 * length,
             head_length=0.08 * length, visible=False,
         )  # fmt: skip
         self._place = page.scene.add_cylinder("/world/place", 0.06 * length, 0.01 * length, _GOAL, visible=False)
