@@ -61,8 +61,8 @@ class Page(viser.ViserServer):
 
 
 def linear(colours: ArrayLike) -> NDArray[np.uint8]:
-    """Colours (..., 3), 0 to 255, for batches of meshes and for arrows: viser takes those as linear light, where it takes
-    all others as sRGB (IEC 61966-2-1)."""
+    """Colours (..., 3), 0 to 255, for batches of meshes and for arrows: viser takes those as linear light, and all others
+    as sRGB (IEC 61966-2-1)."""
     share = np.asarray(colours) / 255
     return np.round(255 * np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)).astype(np.uint8)
 

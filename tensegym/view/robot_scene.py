@@ -79,8 +79,9 @@ class RobotScene:
         in when it comes to it.
         """
         masses = self._model.masses
-        here = np.append(masses @ frame.poses[:, :2] / masses.sum(), 0.0)
-        self.root.position = tuple(here + [0.0, self._aside, 0.0])
+        x, y = masses @ frame.poses[:, :2] / masses.sum()
+        here = np.array([x, y, 0.0])
+        self.root.position = (x, y + self._aside, 0.0)
         poses = np.column_stack([frame.poses[:, :3] - here, frame.poses[:, 3:]])
         places, turns = middles(self._solids, poses), wxyz(poses[[solid.body for solid in self._solids], 3:])
         for kind, batch in self._batches.items():

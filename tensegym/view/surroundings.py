@@ -50,8 +50,8 @@ class Surroundings:
             page.scene.add_line_segments("/world/path", np.stack([points[:-1], points[1:]], axis=1), _PATH,
                                          thickness=0.01 * length)  # fmt: skip
         self._arrow = page.scene.add_arrows(
-            "/world/direction", np.zeros((1, 2, 3)), linear(_GOAL), shaft_radius=0.012 * length, head_radius=0.03 * length,
-            head_length=0.08 * length, visible=False,
+            "/world/direction", np.zeros((1, 2, 3)), linear(_GOAL), shaft_radius=0.012 * length,
+            head_radius=0.03 * length, head_length=0.08 * length, visible=False,
         )  # fmt: skip
         self._place = page.scene.add_cylinder("/world/place", 0.06 * length, 0.01 * length, _GOAL, visible=False)
         self._length, self._stage = length, stage
