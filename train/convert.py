@@ -70,7 +70,8 @@ def _convert(path: Path) -> None:
         write_training(model, env, folder)
     else:
         policy = _plain(model, env, path)
-        config = None if (folder / "config.yaml").is_file() else _config(policy.observation_bounds.shape[1], path)
+        observed = policy.observation_bounds.shape[1]
+        config = None if (folder / "config.yaml").is_file() else _config(observed, path, _zoo_arguments(folder))
         write_policy(policy, folder)
         if config:
             write_text(folder / "config.yaml", yaml.safe_dump({"version": VERSION, **config}))
@@ -91,6 +92,8 @@ def _plain(model: Any, env: Any, path: Path) -> SavedPolicy:
         for what in ("weight", "bias"):
             names = [f"mlp_extractor.{part}.{2 * k}.{what}" for k in range(layers)] + [f"{last}.{what}"]
             weights |= {f"mlp_extractor.{own}.{2 * k}.{what}": given.pop(name) for k, name in enumerate(names)}
+    if weights["log_std"].ndim != 1:
+        raise InputError(one_line(f"{path} explores by its state (use_sde = True); train it with use_sde = False"))
     if given or model.policy.activation_fn is not nn.Tanh or model.policy.squash_output:
         raise InputError(one_line(f"{path} is no policy of plain layers with tanh between them, as PPO's MlpPolicy is"))
     if env is not None and env.norm_obs:
@@ -103,16 +106,26 @@ def _plain(model: Any, env: Any, path: Path) -> SavedPolicy:
     )  # fmt: skip
 
 
-def _config(observed: int, path: Path) -> dict[str, Any]:
-    """Of a policy that has none: the default environment with the observation that is as long."""
+def _zoo_arguments(folder: Path) -> dict[str, Any]:
+    """The environment's arguments that the zoo keeps in NAME/args.yml; none without that file."""
+    for file in sorted(folder.glob("*/args.yml")):
+        kept = dict(yaml.load(file.read_text(encoding="utf-8"), yaml.UnsafeLoader))  # an OrderedDict of Python's
+        return dict(kept.get("env_kwargs") or {})
+    return {}
+
+
+def _config(observed: int, path: Path, arguments: dict[str, Any]) -> dict[str, Any]:
+    """Of a policy that has none: the environment of these arguments, with the observation that is as long."""
     lengths = {}
-    for kind in ("full", "onboard"):
-        with RollingEnv(observation=kind) as env:
+    for kind in [arguments["observation"]] if "observation" in arguments else ("full", "onboard"):
+        kept = {**arguments, "observation": kind}
+        with RollingEnv(**kept) as env:
             lengths[kind] = env.observation_space.shape[0]
         if lengths[kind] == observed:
-            return {"env": {"observation": kind}}
+            return {"env": kept}
+    what = f"the environment of {arguments}" if arguments else "the default environment"
     raise InputError(one_line(
-        f"{path} observes {observed} values, the default environment {lengths}: write a config.yaml beside it with its "
+        f"{path} observes {observed} values, {what} {lengths}: write a config.yaml beside it with its "
         "environment's arguments, as in `env: {design: six_rod_flexible}`, and convert it again"
     ))  # fmt: skip
 

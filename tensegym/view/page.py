@@ -61,7 +61,7 @@ class Page(viser.ViserServer):
 
 
 def linear(colours: ArrayLike) -> NDArray[np.uint8]:
-    """Colours (..., 3), 0 to 255, for batches of meshes and for arrows: viser takes those as linear light, and all others
+    """Colours (..., 3), 0 to 255, for batches of meshes and for arrows: viser takes those as linear light, all others
     as sRGB (IEC 61966-2-1)."""
     share = np.asarray(colours) / 255
     return np.round(255 * np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)).astype(np.uint8)

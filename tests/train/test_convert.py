@@ -4,9 +4,11 @@ import json
 import pickle
 import shlex
 import shutil
+from collections import OrderedDict
 
 import numpy as np
 import pytest
+import yaml
 from stable_baselines3 import PPO
 from stable_baselines3.common.vec_env import DummyVecEnv, VecNormalize
 
@@ -50,6 +52,39 @@ def test_a_plain_policy_acts_as_it_did(env, normalised, tmp_path):
         given = env.normalize_obs(seen[None]) if normalised else seen[None]
         wanted, _ = model.predict(given, deterministic=True)
         np.testing.assert_allclose(policy(seen), wanted[0], rtol=1e-5, atol=1e-6)
+
+
+def test_the_zoo_s_folder_says_which_environment_it_was(tmp_path):
+    """As rl_zoo3 writes it: NAME_1 with zips of policies, NAME/{args.yml, config.yml, vecnormalize.pkl}.
+
+    The robot with flexible rods is seen by as many values as the default one, so the length alone would not tell."""
+    wanted = {"observation": "onboard", "design": "six_rod_flexible"}
+    env = VecNormalize(DummyVecEnv([lambda: RollingEnv(**wanted, settle=0.0)]), norm_reward=False)
+    model = PPO("MlpPolicy", env, n_steps=8, batch_size=8, n_epochs=1, device="cpu", seed=1)
+    model.learn(8)
+    name = "tensegym-SixRodRolling-v0"
+    run = tmp_path / f"{name}_1"
+    (run / name).mkdir(parents=True)
+    arguments = OrderedDict(algo="ppo", env="tensegym/SixRodRolling-v0", env_kwargs=wanted, seed=1)
+    (run / name / "args.yml").write_text(yaml.dump(arguments))
+    (run / name / "config.yml").write_text(yaml.dump(OrderedDict(n_steps=8, normalize=True, policy="MlpPolicy")))
+    env.save(run / name / "vecnormalize.pkl")
+    for zipped in ("best_model.zip", f"{name}.zip"):
+        model.save(run / zipped)
+    Convert(run, trust=True)()
+    policy = load_policy(run)
+    assert policy.env == wanted
+    env.training = False
+    seen = env.reset()[0]
+    action = model.predict(seen[None], deterministic=True)[0][0]
+    np.testing.assert_allclose(policy(env.get_original_obs()[0]), action, rtol=1e-5, atol=1e-6)
+    env.close()
+
+
+def test_a_policy_of_another_exploration_is_refused(env, tmp_path):
+    PPO("MlpPolicy", env, n_steps=4, batch_size=4, use_sde=True, device="cpu").save(tmp_path / "model.zip")
+    with pytest.raises(InputError, match="use_sde = False"):
+        Convert(tmp_path, trust=True)()
 
 
 def test_other_policies_are_refused_before_anything_is_written(env, tmp_path):
