@@ -16,7 +16,7 @@ QUICK = {  # what a command gets besides, so that its work takes seconds; everyt
 }  # fmt: skip
 SHORT = {"rollout: 50": "rollout: 10", "n_envs: 8": "n_envs: 2", "batch_size: 100": "batch_size: 10",
          "episode_seconds: 20.0": "episode_seconds: 2.0"}  # fmt: skip
-ELSEWHERE = ("python3 -m venv", ".venv/bin/", "git clone", "make ", "cd ")  # timed by hand
+ELSEWHERE = ("python3 -m venv", ".venv/bin/", "source ", "git clone", "make ", "cd ")  # timed by hand
 
 
 def blocks(page):
