@@ -32,7 +32,8 @@ class Evaluate:
 
     policy: str = "rolling"
     """A run's folder, or a shipped policy: rolling, onboard, fast, flexible, carry, climb, steep, sprint, agile,
-    agile_onboard, steer, steer_onboard, steer_first, robust, three_rod, four_rod, four_rod_fast, conditioned."""
+    agile_onboard, steer, steer_onboard, steer_first, carry_steer, robust, three_rod, four_rod,
+    four_rod_fast, conditioned."""
     out: Path = Path("evaluation")
     """Folder for metrics.json, gait.png and roll.mp4."""
     episodes: Count = 100
