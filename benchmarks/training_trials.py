@@ -42,8 +42,8 @@ def variants(base: TrainConfig) -> Iterator[tuple[str, dict[str, Any], dict[str,
         yield name, {"gamma": base.gamma**factor}, {"control_period": period * factor}
     yield "discount .9 a step", {"gamma": 0.9}, {}
     yield "discount .99 a step", {"gamma": 0.99}, {}
-    yield "no bonus for entropy", {"ent_coef": 0.0}, {}
-    yield "three times the bonus", {"ent_coef": 3 * (base.ent_coef or 0.001)}, {}
+    bonus = 3 * (base.ent_coef or 1e-3)
+    yield f"a bonus of {bonus:.3g} for entropy", {"ent_coef": bonus}, {}
     yield "half the learning rate", {"learning_rate": base.learning_rate / 2}, {}
     yield "the rate does not fall", {"final_learning_rate": base.learning_rate}, {}
     yield "half as wide", {"hidden": tuple(n // 2 for n in base.hidden)}, {}
