@@ -29,7 +29,7 @@ def test_the_ranges_that_ship_are_held_at_the_environments_step():
     ranges, rng = parse_variation("payload_body", base), np.random.default_rng(0)
     for _ in range(30):
         design = ranges.draw(base, rng)
-        held_implicit(design, robot_model(design), 2e-3)
+        assert held_implicit(design, robot_model(design), 2e-3)
 
 
 REFUSED = {

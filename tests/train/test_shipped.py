@@ -19,7 +19,7 @@ FIGURES = {name: float(median) for name, what, median in ROWS if "half the time 
 """Median speed of each policy over a hundred episodes [rod lengths a second], as the page has it."""
 HELD = 0.85
 SEEDS = range(FIRST_SEED + 58, FIRST_SEED + 70)  # the twelve in a row whose medians come nearest to the hundreds'
-FALLS = {"three_rod"}  # flat on the ground in 11 of 100 episodes, which make no way: docs/structures.md
+FALLS = {"three_rod": 1}  # of the twelve, flat on the ground, which make no way; 11 of the hundred: docs/structures.md
 POLICIES = sorted(p.name for p in shipped("rolling").parent.iterdir() if (p / "config.yaml").is_file())
 
 
@@ -31,7 +31,7 @@ def test_every_shipped_policy_has_its_figure():
 def test_holds_its_figure_without_sliding_or_free_energy(name):
     results = run_trials(policy_setup(name), SEEDS, quiet=True)
     assert all(result.gait.audit_passed and not result.diverged for result in results)
-    assert name in FALLS or not any(result.fallen for result in results)
+    assert sum(result.fallen for result in results) <= FALLS.get(name, 0)
     assert np.median([result.scores()["speed_lps"] for result in results]) >= HELD * FIGURES[name]
     assert np.median([result.gait.slip_share for result in results]) < 0.3
     assert np.median([result.gait.tips for result in results]) > 10
