@@ -145,7 +145,6 @@ def least_stiffness(
     return float(stiff[0]), mode / np.linalg.norm(mode, axis=1).max()
 
 
-
 def node_stiffness(structure: Structure, tension: ArrayLike, stiffness: ArrayLike) -> tuple[float, FloatArray]:
     """`least_stiffness` of cables that end on the nodes, for rods that may share these.
 

@@ -49,8 +49,6 @@ def ntrt_text(design: RobotDesign, units: str = "m") -> str:
     return "\n".join([*lines, *pairs, *builders, ""])
 
 
-
-
 def _tags(names: Sequence[str], kinds: Sequence[Hashable], plain: str, taken: Sequence[str] = ()) -> list[str]:
     """One for each kind of member of each group: the group's name, or ``plain`` of those in none; with a number from
     the second kind on, as of the tensions of a group whose nodes are kept, or where the tag is taken."""
