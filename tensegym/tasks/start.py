@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,17 +24,24 @@ class Start(NamedTuple):
     """Angle of a direction from the world's x axis [rad], for goals that want one."""
 
 
-def draw_start(faces: int, rng: np.random.Generator, options: Mapping[str, Any]) -> Start:
+def draw_start(faces: Sequence[int], rng: np.random.Generator, options: Mapping[str, Any]) -> Start:
     """A random start, with what the options give in its place: the same draws are made whatever they give.
 
     Args:
-        faces: how many the robot has.
+        faces: that it may be on, one as often as it is there.
         rng: makes three draws.
         options: face, heading, direction; others are left alone.
     """
-    face, heading = int(rng.integers(faces)), float(rng.uniform(-math.pi, math.pi))
+    face, heading = faces[rng.integers(len(faces))], float(rng.uniform(-math.pi, math.pi))
     direction = float(rng.uniform(-math.pi, math.pi))
     return Start(options.get("face", face), options.get("heading", heading), options.get("direction", direction))
+
+
+def check_faces(wanted: Sequence[int], faces: int) -> None:
+    """Raises DesignError naming the first face to begin on that is none of a robot with so many."""
+    for face in wanted:
+        if face >= faces:
+            raise DesignError(f"the task's faces: {face} is outside 0..{faces - 1}, the faces of this robot")
 
 
 def check_options(options: Mapping[str, Any], faces: int) -> None:

@@ -35,7 +35,8 @@ class Task(Checked, error=DesignError):
     """Where an episode starts, what is wanted, on what ground, when it ends, what is rewarded and measured.
 
     A task of your own is a subclass: give ``goal`` a default and change what differs of `aim`, `over`, `rewards` and
-    `measures`. docs/extend.md has an example. Every episode starts at rest on a random face at a random heading.
+    `measures`. docs/extend.md has an example. Every episode starts at rest on a random face, of ``faces`` where they are given, at a random
+    heading.
 
     Raises:
         DesignError: a field is outside its range.
@@ -46,6 +47,8 @@ class Task(Checked, error=DesignError):
     motion: str = noted("", "name of the motion; default: that of the class")
     seconds: float = bounded(0.1, 3600, 10.0, "s", "length of an episode")
     settle: float = bounded(0, 60, 0.3, "s", "standing still before it")
+    faces: tuple[int, ...] = bounded(0, 9999, (), "", "that it may begin on, more likely the more often one is named; "
+                                     "none: any")
     patience: float = bounded(0, 3600, 4.0, "s", "given up without a tip in this time; environments never give up")
     dt: float = bounded(LEAST_TIME_STEP, LARGEST_TIME_STEP, 2e-3, "s", "physics time step")
     engine: str = choice(*ENGINES, what="that steps the robot")
