@@ -18,7 +18,7 @@ from tensegym.robot.robot import TensegrityRobot
 
 from .faults import Faults
 from .goal import Heading
-from .start import Start, check_faces, check_options, draw_start
+from .start import Start, check_options, draw_start
 from .task import Task
 
 
@@ -51,7 +51,6 @@ class Episode(Uncopied):
         self, robot: TensegrityRobot, task: Task, rng: np.random.Generator, options: Mapping[str, Any] | None = None
     ) -> None:
         faces = len(robot.faces.triangles)
-        check_faces(task.faces, faces)
         check_options(options or {}, faces)
         self.robot, self.task, self._length = robot, task, robot.design.length
         self.start: Start = draw_start(task.faces or range(faces), rng, options or {})

@@ -37,13 +37,6 @@ def draw_start(faces: Sequence[int], rng: np.random.Generator, options: Mapping[
     return Start(options.get("face", face), options.get("heading", heading), options.get("direction", direction))
 
 
-def check_faces(wanted: Sequence[int], faces: int) -> None:
-    """Raises DesignError naming the first face to begin on that is none of a robot with so many."""
-    for face in wanted:
-        if face >= faces:
-            raise DesignError(f"the task's faces: {face} is outside 0..{faces - 1}, the faces of this robot")
-
-
 def check_options(options: Mapping[str, Any], faces: int) -> None:
     """Raises DesignError naming the first of face, heading and direction that is none."""
     for name in ("heading", "direction"):

@@ -95,8 +95,15 @@ class Task(Checked, error=DesignError):
         return design.with_(payload=replace(design.payload or Payload(), mass=self.payload))
 
     def robot(self, design: RobotDesign, gui: bool = False) -> TensegrityRobot:
-        """A robot on its ground, in its engine. Raises as TensegrityRobot."""
-        return TensegrityRobot(design, dt=self.dt, ground=self.ground(design), gui=gui, engine=self.engine)
+        """A robot on its ground, in its engine. Raises as TensegrityRobot, and DesignError where it lacks one of the
+        faces to begin on."""
+        robot = TensegrityRobot(design, dt=self.dt, ground=self.ground(design), gui=gui, engine=self.engine)
+        last = len(robot.faces.triangles) - 1
+        if self.faces and max(self.faces) > last:
+            robot.close()
+            raise DesignError(f"{type(self).__name__}.faces: {max(self.faces)} is outside 0..{last}, the faces of "
+                              f"{design.name!r}")  # fmt: skip
+        return robot
 
     def changed(self: Own, **changes: Any) -> Own:
         """A copy with the fields that are not None replaced; ``reward`` may be a dict of weights to change,

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import gymnasium as gym
 import numpy as np
 import pytest
 
 from tensegym import as_task
+from tensegym.cli.train import Train
 from tensegym.errors import DesignError, TensegymError
 from tensegym.robot.robot import TensegrityRobot
 from tensegym.tasks.episode import Episode
@@ -93,3 +96,23 @@ def test_each_task_has_an_environment_of_its_own(name):
     assert set(info["measures"]) == set(env.unwrapped.task.MEASURES)
     assert env.spec.max_episode_steps == round(env.unwrapped.task.seconds / 0.4)
     env.close()
+
+
+def test_episodes_begin_on_the_faces_that_are_named_the_more_often_the_oftener():
+    env = gym.make("tensegym/SixRodPlaces-v0", task={"motion": "places", "faces": [10, 3, 10, 10]})
+    begun = [env.reset(seed=seed)[1]["face"] for seed in range(24)]
+    env.close()
+    assert {*begun} == {3, 10}
+    assert begun.count(10) > begun.count(3)
+
+
+def test_a_face_to_begin_on_that_a_robot_lacks_is_refused_before_anything_is_made(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(DesignError, match=r"Navigate.faces: 20 is outside 0\.\.19, the faces of 'six_rod'"):
+        gym.make("tensegym/SixRodPlaces-v0", task={"motion": "places", "faces": [3, 20]})
+    with pytest.raises(TensegymError, match=r"faces\[1\] = -1 is outside"):
+        as_task({"motion": "places", "faces": [-1]})
+    Path("begin.yaml").write_text("env: {task: {motion: roll, faces: [99]}}\n", encoding="utf-8")
+    with pytest.raises(DesignError, match="99 is outside"):
+        Train(config="begin.yaml").run()
+    assert [path.name for path in tmp_path.iterdir()] == ["begin.yaml"]
