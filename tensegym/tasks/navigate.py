@@ -65,7 +65,9 @@ class Navigate(Task):
             alone, time, drift, way, stay, side, turn = rng.random(7)
             seconds = self.leg_least + time * (self.leg_most - self.leg_least)
             if alone < self.headings:
-                yield Target(angle, math.inf, seconds, math.radians(self.drift) * (2 * drift - 1))
+                target = Target(angle, math.inf, seconds, math.radians(self.drift) * (2 * drift - 1))
+                yield target
+                angle += target.drift * seconds  # the next one turns from where this one has come to
             else:
                 distance = (self.near + way * (self.far - self.near)) * length
                 yield Target(angle, distance, seconds if stay < self.stays else 0.0, 0.0)

@@ -116,3 +116,17 @@ def test_a_face_to_begin_on_that_a_robot_lacks_is_refused_before_anything_is_mad
     with pytest.raises(DesignError, match="99 is outside"):
         Train(config="begin.yaml").run()
     assert [path.name for path in tmp_path.iterdir()] == ["begin.yaml"]
+
+
+def test_a_direction_that_has_drifted_turns_from_where_it_has_come_to():
+    task = {"motion": "steer", "leg_least": 2.0, "leg_most": 2.0, "turn_most": 0.0, "drift": 30.0}
+    env = gym.make("tensegym/SixRodSteer-v0", task=task, control_period=0.4).unwrapped
+    env.reset(seed=1)
+    angles = [np.arctan2(*env.episode.bearing.direction[::-1])]
+    for _ in range(30):  # six legs
+        env.step(-np.ones(6))
+        angles.append(np.arctan2(*env.episode.bearing.direction[::-1]))
+    turned = np.degrees(np.abs(np.diff(np.unwrap(angles))))
+    assert turned.max() <= 12 + 1e-9  # 30 deg/s for 0.4 s
+    assert np.ptp(np.unwrap(angles)) > np.radians(30)
+    env.close()
