@@ -56,7 +56,6 @@ class TrainConfig(Checked, error=InputError):
     target_kl: float | None = bounded(0, 10, None, "", "divergence at which an update stops", open_low=True)
     hidden: tuple[int, ...] = bounded(1, 10**5, (256, 256), "", "widths of the hidden layers")
     log_std_init: float = bounded(-10, 3, 0.0, "", "logarithm of the actions' first standard deviation", open_low=True)
-    mean_bound: float | None = bounded(1, 100, None, "", "within which the actions' means are held, so that noise tells")
     start_std: float | None = bounded(0, 10, None, "", "the same where there is a start, in place of that policy's own",
                                       open_low=True)
 

@@ -89,7 +89,7 @@ def train(config: TrainConfig, out: Path, state: TrainState) -> int:
 
 def _new_model(config: TrainConfig, env: VecNormalize, seed: int) -> PPO:
     probe = make_env(config)
-    arguments = {"hidden": list(config.hidden), "log_std_init": config.log_std_init, "mean_bound": config.mean_bound,
+    arguments = {"hidden": list(config.hidden), "log_std_init": config.log_std_init,
                  **symmetry_arguments(cast(RollingEnv, probe.unwrapped))}  # fmt: skip
     probe.close()
     return PPO(

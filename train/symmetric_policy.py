@@ -16,8 +16,6 @@ from torch import nn
 from tensegym.design.symmetry import symmetries
 from tensegym.envs.rolling import RollingEnv
 
-_PULL = 0.3  # weight of half the square of a mean beyond its bound, in the loss
-
 
 def symmetry_arguments(env: RollingEnv) -> dict[str, list[list[int]]]:
     """Policy arguments: how each symmetry of the env's robot permutes observations and actions.
@@ -45,25 +43,6 @@ def symmetry_arguments(env: RollingEnv) -> dict[str, list[list[int]]]:
     }
 
 
-class _Held(torch.autograd.Function):
-    """Means held within a bound. Gradients pass as if they were not, and what lies beyond is pulled back.
-
-    Commands are clipped to 1: noise about a mean of 3 explores nothing, and a policy that has come to such means in a
-    pose where it gets nowhere never learns another way. What is commanded without noise stays the same.
-    """
-
-    @staticmethod
-    def forward(ctx: Any, means: torch.Tensor, bound: float) -> torch.Tensor:  # type: ignore[override]
-        held = means.clamp(-bound, bound)
-        ctx.save_for_backward(means - held)
-        return held
-
-    @staticmethod
-    def backward(ctx: Any, gradient: torch.Tensor) -> tuple[torch.Tensor, None]:  # type: ignore[override]
-        (beyond,) = ctx.saved_tensors
-        return gradient + _PULL * beyond / len(beyond), None
-
-
 class _SymmetricNetworks(nn.Module):
     """Mean action and value, each averaged over the group."""
 
@@ -72,11 +51,9 @@ class _SymmetricNetworks(nn.Module):
     back: torch.Tensor
 
     def __init__(
-        self, size: int, hidden: list[int], index: torch.Tensor, sign: torch.Tensor, back: torch.Tensor,
-        bound: float | None,
-    ) -> None:  # fmt: skip
+        self, size: int, hidden: list[int], index: torch.Tensor, sign: torch.Tensor, back: torch.Tensor
+    ) -> None:
         super().__init__()
-        self.bound = bound
         self.register_buffer("index", index)
         self.register_buffer("sign", sign)
         self.register_buffer("back", back)
@@ -89,8 +66,7 @@ class _SymmetricNetworks(nn.Module):
 
     def forward_actor(self, features: torch.Tensor) -> torch.Tensor:
         means = self.actor(self._images(features))
-        mean = means.gather(2, self.back.expand(len(means), -1, -1)).mean(dim=1)
-        return mean if self.bound is None else _Held.apply(mean, self.bound)
+        return means.gather(2, self.back.expand(len(means), -1, -1)).mean(dim=1)
 
     def forward_critic(self, features: torch.Tensor) -> torch.Tensor:
         return self.critic(self._images(features)).mean(dim=1)
@@ -118,16 +94,15 @@ class SymmetricPolicy(ActorCriticPolicy):
 
     def __init__(
         self, *args: Any, hidden: list[int], observation_index: list[list[int]], observation_sign: list[list[int]],
-        action_index: list[list[int]], mean_bound: float | None = None, **kwargs: Any,
+        action_index: list[list[int]], **kwargs: Any,
     ) -> None:  # fmt: skip
         self._group = (torch.tensor(observation_index), torch.tensor(observation_sign, dtype=torch.float32),
                        torch.tensor(action_index))  # fmt: skip
-        self._hidden, self._bound = list(hidden), mean_bound
+        self._hidden = list(hidden)
         super().__init__(*args, ortho_init=False, **kwargs)
 
     def _build_mlp_extractor(self) -> None:
-        self.mlp_extractor = _SymmetricNetworks(self.features_dim, self._hidden, *self._group, self._bound)
-        self.mlp_extractor.to(self.device)
+        self.mlp_extractor = _SymmetricNetworks(self.features_dim, self._hidden, *self._group).to(self.device)
 
     def _build(self, lr_schedule: Any) -> None:
         super()._build(lr_schedule)
