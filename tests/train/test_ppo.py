@@ -10,11 +10,13 @@ import sys
 import time
 from importlib.metadata import version
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
 
+import tensegym
 from tensegym.control.policy import load_policy
 from tensegym.control.policy_file import read_arrays, read_policy
 from tensegym.envs.rolling import RollingEnv
@@ -227,7 +229,10 @@ def test_a_missing_or_unknown_config_and_no_steps_are_refused(tmp_path, cli):
     assert not out.exists()
 
 
-@pytest.mark.parametrize("name", ["rolling", "onboard", "flexible", "conditioned", "climb", "carry", "steep"])
+CONFIGS = sorted(path.stem for path in Path(tensegym.__file__).parent.glob("train/configs/*.yaml"))
+
+
+@pytest.mark.parametrize("name", CONFIGS)
 def test_the_committed_configs_are_sound(name):
     from tensegym.train.config import load_config
     from tensegym.train.ppo import make_env
@@ -236,7 +241,9 @@ def test_the_committed_configs_are_sound(name):
     env = make_env(config)
     assert env.spec.max_episode_steps * config.env["control_period"] == pytest.approx(config.episode_seconds)
     assert config.rollout_steps % config.batch_size == 0
-    assert env.unwrapped.task.reward == RewardWeights()  # what gym.make weighs is what the shipped policies learned by
+    weights, usual = env.unwrapped.task.reward, RewardWeights()  # the shipped policies learned by what gym.make weighs
+    assert weights.changed({"slip": usual.slip}) == usual
+    assert weights.slip >= usual.slip  # prisms pay more
     env.close()
 
 
