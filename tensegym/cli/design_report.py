@@ -10,7 +10,7 @@ from tensegym.errors import InputError
 from tensegym.report import Report, table
 from tensegym.search.confirm import confirm
 from tensegym.search.problem import Problem
-from tensegym.search.report import write_report
+from tensegym.search.report import goal_row, write_report
 from tensegym.search.winner import ranked
 from tensegym.search.workers import open_workers
 
@@ -53,7 +53,7 @@ class DesignReport:
         with open_workers(self.workers, self.jobs, self.address) as pool:
             confirmed = confirm(problem, finished, pool, self.episodes)
         data = write_report(self.folder, problem, store, confirmed, others)
-        shown = {"goal_metric_mean": f"{problem.task.goal.metric}, mean"} | _SHOWN
+        shown = goal_row(problem) | _SHOWN
         rows = [[name, *(column[key] for key in shown)] for name, column in data["confirmed"].items()]
         header = ["", *shown.values()]
         gains = "".join(f"\n{each['text']}" for each in data["gains"])

@@ -123,6 +123,12 @@ def write_report(
     return data
 
 
+def goal_row(problem: Problem) -> dict[str, str]:
+    """Name of the goal's metric in a table; none where it is the speed, whose mean stands there anyway."""
+    metric = problem.task.goal.metric
+    return {} if metric == "speed_lps" else {"goal_metric_mean": f"{metric}, mean"}
+
+
 def _last_best(values: FloatArray, maximise: bool) -> float | None:
     if np.isnan(values).all():
         return None
@@ -141,7 +147,7 @@ def _lines(problem: Problem, store: Store, values: dict[str, Any], data: dict[st
         yield ""
         yield f"On the same starts: {'; '.join(each['text'] for each in data['constraints'])}."
     yield ""
-    shown_rows = {"goal_metric_mean": f"{problem.task.goal.metric}, mean"} | _ROWS
+    shown_rows = goal_row(problem) | _ROWS
     yield from _table(["", *columns], [[what, *(c[key] for c in columns.values())] for key, what in shown_rows.items()])
     yield ""
     yield (f"Beside the start, at {1e3 * TIME_STEP:g} ms from the same starts, mean of the differences [95 %]: "
