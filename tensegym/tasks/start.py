@@ -32,7 +32,7 @@ def draw_start(faces: Sequence[int], rng: np.random.Generator, options: Mapping[
         rng: makes three draws.
         options: face, heading, direction; others are left alone.
     """
-    face, heading = faces[rng.integers(len(faces))], float(rng.uniform(-math.pi, math.pi))
+    face, heading = faces[int(rng.integers(len(faces)))], float(rng.uniform(-math.pi, math.pi))
     direction = float(rng.uniform(-math.pi, math.pi))
     return Start(options.get("face", face), options.get("heading", heading), options.get("direction", direction))
 

@@ -35,8 +35,8 @@ class Task(Checked, error=DesignError):
     """Where an episode starts, what is wanted, on what ground, when it ends, what is rewarded and measured.
 
     A task of your own is a subclass: give ``goal`` a default and change what differs of `aim`, `over`, `rewards` and
-    `measures`. docs/extend.md has an example. Every episode starts at rest on a random face, of ``faces`` where they are given, at a random
-    heading.
+    `measures`. docs/extend.md has an example. Every episode starts at rest on a random face, of ``faces`` where they
+    are given, at a random heading.
 
     Raises:
         DesignError: a field is outside its range.
