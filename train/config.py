@@ -22,7 +22,7 @@ from typing import Any
 from tensegym.design.variation import named_ranges
 from tensegym.errors import InputError
 from tensegym.files import without_version
-from tensegym.tables import Checked, bounded, fill, in_file, noted, one_line, parse_yaml, read_text, show
+from tensegym.tables import Checked, bounded, fill, hint, in_file, noted, one_line, parse_yaml, read_text, show
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ def load_config(name: str) -> TrainConfig:
         names = sorted(p.name.removesuffix(".yaml") for p in shipped.iterdir() if p.name.endswith(".yaml"))
         if name not in names:
             raise InputError(one_line(
-                f"unknown {what} {show(name)}; one of {', '.join(names)}, or a path to a YAML file"
+                f"unknown {what} {show(name)}: give a path to a YAML file, or a shipped one's name; {hint(name, names)}"
             ))  # fmt: skip
         text = (shipped / f"{name}.yaml").read_text(encoding="utf-8")
     data = without_version(parse_yaml(text, f"{what} {name}", InputError), f"{what} {name}")

@@ -17,6 +17,7 @@ from .values import (
     as_text,
     as_whole,
     as_whole_rows,
+    hint,
     in_file,
     known,
     mapping,
@@ -26,7 +27,7 @@ from .values import (
 
 __all__ = [
     "Checked", "Error", "FieldRow", "Range", "Rows", "as_number", "as_numbers", "as_rows", "as_text",
-    "as_whole", "as_whole_rows", "bounded", "check_fields", "choice", "decode", "describe", "fill", "in_file",
-    "known", "mapping", "noted", "number_of", "one_line", "parse_json", "parse_toml", "parse_yaml", "parsed",
+    "as_whole", "as_whole_rows", "bounded", "check_fields", "choice", "decode", "describe", "fill", "hint",
+    "in_file", "known", "mapping", "noted", "number_of", "one_line", "parse_json", "parse_toml", "parse_yaml", "parsed",
     "read_fields", "read_json", "read_records", "read_rows", "read_text", "read_toml", "read_yaml", "show",
 ]  # fmt: skip

@@ -60,10 +60,14 @@ def known(table: Any, allowed: Collection[str], where: str, error: Error) -> dic
     fields = mapping(table, where, error)
     for name in fields:
         if name not in allowed:
-            close = difflib.get_close_matches(str(name)[:100], allowed, 1)
-            hint = f"did you mean {close[0]!r}?" if close else f"one of {', '.join(sorted(allowed))}"
-            raise error(one_line(f"unknown field {show(name)} in {where}; {hint}"))
+            raise error(one_line(f"unknown field {show(name)} in {where}; {hint(name, allowed)}"))
     return fields
+
+
+def hint(name: Any, allowed: Collection[str]) -> str:
+    """For a message about a name that there is not: the nearest that there is, or all of them."""
+    close = difflib.get_close_matches(str(name)[:100], allowed, 1)
+    return f"did you mean {close[0]!r}?" if close else f"one of {', '.join(sorted(allowed))}"
 
 
 def as_number(value: Any, where: str, error: Error, wanted: str = "a finite number") -> float:
