@@ -6,13 +6,12 @@ nu = 0.38). Where the paper gives no dimension, the one taken here is said in th
 
 from __future__ import annotations
 
-import difflib
 import inspect
 import math
 from collections.abc import Callable
 
 from tensegym.errors import FlexureError
-from tensegym.tables import show
+from tensegym.tables import hint, show
 
 from .hinge import GROUND, TIP, Hinge, Leaf, Material
 from .profile import Notch, Taper
@@ -126,10 +125,8 @@ PAPER_HINGES = ("x-hinge", "leaf-spring", "trls2", "tfch")
 def preset(name: str, **dimensions: float) -> Hinge:
     """A preset by name, with its dimensions [m] by keyword. Raises FlexureError for an unknown name or dimension."""
     if not isinstance(name, str) or name not in PRESETS:
-        near = difflib.get_close_matches(str(name)[:100], PRESETS, 1)
-        hint = f"; did you mean {near[0]}?" if near else ""
-        names = ", ".join(PRESETS)
-        raise FlexureError(f"unknown hinge {show(name)}; one of {names}, or a path that ends in .toml{hint}")
+        raise FlexureError(f"unknown hinge {show(name)}: give a path that ends in .toml, or a preset's name; "
+                           f"{hint(name, PRESETS)}")  # fmt: skip
     known = set(inspect.signature(PRESETS[name]).parameters)
     for key in dimensions:
         if key not in known:

@@ -33,7 +33,7 @@ def test_travel_of_a_hinge(cli):
 
 
 @pytest.mark.parametrize(("options", "words"), [
-    (("leafspring",), ("did you mean leaf-spring",)),
+    (("leafspring",), ("did you mean 'leaf-spring'",)),
     (("tfch", "--max-angle-deg", 0), ("max_angle_deg = 0",)),
     (("tfch", "--travel-mm", 0), ("travel_mm = 0",)),
     (("tfch", "--travel-mm", 1, "--max-angle-deg", 3), ("give one of --travel-mm",)),

@@ -47,7 +47,7 @@ PLAIN = Leaf(GROUND, (0, 0), TIP, (0.04, 0), 0.04, 0.0008)
     (lambda: Hinge("h", (PLAIN,), 0.04, arm=-0.1), "arm = -0.1 m"),
     (lambda: Hinge("h", (PLAIN,), 0.04, max_angle=2), "max_angle = 2 rad"),
     (lambda: preset("cross-spring", crossing=1.5), "crossing = 1.5 is outside"),
-    (lambda: preset("leafspring"), "did you mean leaf-spring"),
+    (lambda: preset("leafspring"), "did you mean 'leaf-spring'"),
     (lambda: preset("leaf-spring", height=0.1), "has no 'height'"),
     (lambda: trls2(rib=0.02), "rib = 0.02 m"),
     (lambda: preset("trls2", rib=0), "rib = 0 m"),
