@@ -3,10 +3,10 @@
 import json
 
 import pytest
-from conftest import assert_refused
 
 from tensegym.design.design_file import load_design
 from tensegym.structures import BUILDERS
+from tests.conftest import assert_refused
 
 
 def test_a_prism_becomes_a_design_file_that_stands_as_built(cli, tmp_path):

@@ -4,10 +4,10 @@ import json
 import sys
 
 import pytest
-from conftest import assert_refused
 
 from tensegym.files import VERSION
 from tensegym.tasks import as_task, policy_setup
+from tests.conftest import assert_refused
 
 COMMANDS = ("evaluate --out {0}", "roll --out {0}", "step --out {0}", "simulate --commands {1} --out {0}",
             "validate", "design run --task carry --out {0}")  # fmt: skip

@@ -4,11 +4,11 @@ import mujoco
 import numpy as np
 import pybullet
 import pytest
-from conftest import assert_refused
 
 from tensegym.design.design_file import as_design, design_to_dict, load_design
 from tensegym.mujoco.robot_mjcf import cable_names, robot_mjcf
 from tensegym.robot.robot import TensegrityRobot
+from tests.conftest import assert_refused
 
 PAYLOAD = 'preset = "six_rod"\n[payload]\nmass = 0.5\n'
 

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import assert_refused
 
 from tensegym.design.design_file import load_design
+from tests.conftest import assert_refused
 
 CASES = Path(__file__).parents[1] / "exchange" / "cases"
 

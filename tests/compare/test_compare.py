@@ -5,12 +5,12 @@ import sys
 
 import numpy as np
 import pytest
-from conftest import assert_refused
 
 from tensegym.compare import motion, settling, steps
 from tensegym.compare.episodes import episodes
 from tensegym.design.design import RobotDesign, flexible_design
 from tensegym.mujoco import mjcf, world
+from tests.conftest import assert_refused
 
 DT = 2e-3
 
